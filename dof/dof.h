@@ -20,6 +20,7 @@
 namespace softfocus {
 
 struct Image;
+struct Pipeline;
 
 inline constexpr float kLargestMaxCoc = 1024.0f;
 
@@ -38,6 +39,13 @@ struct TransparentLayer {
   ConstImageView opacity;
 };
 
+/// The frame that a picture is of, for pipelines (dof/pipelines).
+struct FrameValues {
+  double near_m = 0.1, far_m = 1000.0;  ///< the camera's planes
+  double aperture_radius_m = 0.0;
+  double number = 0.0;  ///< of a sequence
+};
+
 /// What every method is told about the lens and the filter.
 struct DofSettings {
   PixelCoc coc;
@@ -51,6 +59,7 @@ struct DofSettings {
   float budget = 0.25f;
   /// Of scatter-aperture, one without an aperture_error(); the others know round ones alone.
   Aperture aperture{};
+  FrameValues frame{};
 };
 
 /// The part of a result that is wanted; without a width all of it.
@@ -97,6 +106,7 @@ struct Method {
   std::string_view summary;
   /// The inputs that the method reads, for the list of methods.
   std::string_view needs;
+  /// Null of a pipeline.
   void (*filter)(const DofInput& input, const ImageView& result, ThreadPool& pool);
   /// Whether a larger max_coc_px costs nothing and leaves smaller circles as they are: then no
   /// circle need be cut.
@@ -107,6 +117,7 @@ struct Method {
   std::size_t layers = 1;
   /// Whether it makes use of DofInput::radii_px.
   bool takes_radii = false;
+  const Pipeline* pipeline = nullptr;  ///< a user's passes
 };
 
 std::span<const Method> methods();
@@ -119,7 +130,7 @@ const char* input_error(const DofInput& input, const ConstImageView& result);
 
 /// Writes every pixel of `result`, depth in alpha. It has the scene's size and format and
 /// shares no memory with it. Needs an input without input_error(). Throws std::bad_alloc
-/// if there is no memory for what the method keeps meanwhile.
+/// if there is no memory for what the method keeps meanwhile, of a pipeline ShaderError too.
 void apply(const Method& method, const DofInput& input, const ImageView& result, ThreadPool& pool);
 
 /// The same into a new image (raster/images/image.h).

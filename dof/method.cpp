@@ -18,6 +18,7 @@
 #include "dof/mipmap/mipmap.h"
 #include "dof/object_layers/object_layers.h"
 #include "dof/one_pass/one_pass.h"
+#include "dof/pipelines/pipeline.h"
 #include "dof/polygon/polygon.h"
 #include "dof/ray_distribution/ray_distribution.h"
 #include "dof/ring_bucket/ring_bucket.h"
@@ -175,8 +176,12 @@ const char* input_error(const DofInput& input, const ConstImageView& result) {
 void apply(const Method& method, const DofInput& input, const ImageView& result, ThreadPool& pool) {
   assert(input_error(input, result) == nullptr);
   const DefaultFloatEnvironment environment;
-  method.filter(input, result, pool);
-  lay_transparent_over(method, input, result, pool);
+  const auto filter = [&](const DofInput& of, const ImageView& to) {
+    if (method.pipeline != nullptr) return run_pipeline(*method.pipeline, of, to, pool);
+    method.filter(of, to, pool);
+  };
+  filter(input, result);
+  lay_transparent_over(input, result, filter, pool);
 }
 
 Image apply(const Method& method, const DofInput& input, ThreadPool& pool) {

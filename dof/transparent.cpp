@@ -5,8 +5,8 @@
 
 namespace softfocus {
 
-void lay_transparent_over(const Method& method, const DofInput& input, const ImageView& result,
-                          ThreadPool& pool) {
+void lay_transparent_over(const DofInput& input, const ImageView& result,
+                          const FilterPicture& filter, ThreadPool& pool) {
   if (input.transparent.empty()) return;
   const int width = input.scene.width, height = input.scene.height;
   Image colour = make_image(Format::rgba16f, width, height);
@@ -14,9 +14,9 @@ void lay_transparent_over(const Method& method, const DofInput& input, const Ima
   DofInput layer{.scene = input.scene, .settings = input.settings, .profile = input.profile};
   for (std::size_t i = input.transparent.size(); i-- > 0;) {
     layer.scene = input.transparent[i].colour;
-    method.filter(layer, colour, pool);
+    filter(layer, colour);
     layer.scene = input.transparent[i].opacity;
-    method.filter(layer, opacity, pool);
+    filter(layer, opacity);
     pool.for_each(height, [&](int y) {
       std::uint16_t* below = row<std::uint16_t>(result, y).data();
       lay_over({row<std::uint16_t>(colour, y).data(), row<std::uint16_t>(opacity, y).data(), width},

@@ -18,13 +18,17 @@
 // in the part of its edge that one sees through; where two transparent surfaces change places in
 // the layers, at the outline of the nearer, the farther changes its layer.
 
+#include <functional>
+
 #include "dof/dof.h"
 
 namespace softfocus {
 
-/// Lays the input's transparent layers, filtered by the method, over `result`, the filtered scene.
-/// Alpha is that of the nearest layer whose opacity is 1/2 or more, where there is such.
-void lay_transparent_over(const Method& method, const DofInput& input, const ImageView& result,
-                          ThreadPool& pool);
+using FilterPicture = std::function<void(const DofInput& input, const ImageView& result)>;
+
+/// Lays the input's transparent layers, filtered as the scene was, over `result`, the filtered
+/// scene. Alpha is that of the nearest layer whose opacity is 1/2 or more, where there is such.
+void lay_transparent_over(const DofInput& input, const ImageView& result,
+                          const FilterPicture& filter, ThreadPool& pool);
 
 }  // namespace softfocus

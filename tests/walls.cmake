@@ -6,7 +6,7 @@ set(order
   raster/numbers raster/lanes raster/threads raster/images raster/pipeline raster/passes raster/shaders raster/shaders/glsl raster/temporal raster/effects/motion raster/effects raster/raster.h
   dof/fixed dof dof/two_pass dof/one_pass dof/disc_layers dof/scatter
   dof/half_resolution dof/ring_bucket dof/circular dof/polygon dof/mipmap dof/object_layers dof/ray_distribution
-  dof/methods dof/fixed_pictures dof/method.cpp dof/measure dof/auto dof/c
+  dof/methods dof/fixed_pictures dof/pipelines dof/method.cpp dof/measure dof/auto dof/c
   scenes/scene.h scenes/parameters.h scenes/make scenes/random scenes/files scenes/load scenes/embree scenes/surfaces scenes/lens_views/lens_points.h scenes/lens_views/lens_points.cpp scenes/shadows scenes/shadows/maps scenes/shadows/volumes
   scenes/draw scenes/relief scenes/relief/warp scenes/relief/impostors scenes/lens_views scenes/traced_relief
   scenes/temporal scenes/filtered_views scenes/warped_views

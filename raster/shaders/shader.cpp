@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <mutex>
 #include <utility>
@@ -89,19 +90,21 @@ class Run {
   std::vector<DecodedTexture> decoded_{};
   std::vector<ShaderTexture> textures_{};
 
-  /// For what filters texels, which reads them as floats.
+  /// For what filters texels, or fetches others than halves: it reads them as floats.
   void decode_textures() {
     textures_.assign(pass_.textures.begin(), pass_.textures.end());
-    const bool filters = std::any_of(
-        program_.samples.begin(), program_.samples.end(), [](const ShaderSampleRegisters& of) {
-          const SampleKind kind = of.sample.kind;
-          return kind == SampleKind::implicit || kind == SampleKind::level ||
-                 kind == SampleKind::gradient;
-        });
-    if (!filters) return;
+    bool filters = false, fetches = false;
+    for (const ShaderSampleRegisters& of : program_.samples) {
+      const SampleKind kind = of.sample.kind;
+      filters = filters || kind == SampleKind::implicit || kind == SampleKind::level ||
+                kind == SampleKind::gradient;
+      fetches = fetches || kind == SampleKind::fetch;
+    }
     decoded_.reserve(textures_.size());
     for (ShaderTexture& of : textures_) {
       if (of.texture == nullptr || of.decoded != nullptr) continue;
+      const bool is_half = of.texture->levels[0].format == Format::rgba16f;
+      if (!filters && (!fetches || is_half)) continue;
       const auto same =
           std::find_if(decoded_.begin(), decoded_.end(),
                        [&](const DecodedTexture& made) { return made.source == of.texture; });
@@ -237,6 +240,16 @@ const ShaderUniform* find_uniform(const UserShader& shader, std::string_view nam
     if (uniform.name == name) return &uniform;
   }
   return nullptr;
+}
+
+std::optional<std::uint32_t> uniform_word(const ShaderUniform& of, double value) {
+  if (of.kind == SpirvKind::floating) {
+    return std::bit_cast<std::uint32_t>(static_cast<float>(value));
+  }
+  if (of.kind == SpirvKind::boolean) return value != 0.0 ? ~0u : 0u;
+  const double least = of.is_signed ? -0x1p31 : 0.0, most = of.is_signed ? 0x1p31 : 0x1p32;
+  if (!(value >= least && value < most) || value != std::floor(value)) return {};
+  return static_cast<std::uint32_t>(static_cast<std::int64_t>(value));
 }
 
 ShaderProgram compile_shader(const UserShader& shader, std::span<const std::uint32_t> words) {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -28,6 +29,14 @@ UserShader make_shader(std::vector<std::uint32_t> words);
 
 /// The uniform of that name ("tint", "light.colour", "tint[0]" is "tint"), or null.
 const ShaderUniform* find_uniform(const UserShader& shader, std::string_view name);
+
+inline bool is_texture(const ShaderUniform& of) {
+  return of.kind == SpirvKind::sampled_image || of.kind == SpirvKind::image ||
+         of.kind == SpirvKind::sampler;
+}
+
+/// The bits of a number as a uniform of that kind has them; nothing if it cannot be one.
+std::optional<std::uint32_t> uniform_word(const ShaderUniform& of, double value);
 
 /// A shader with its uniforms: `words` as ShaderUniforms has them. Throws ShaderError.
 ShaderProgram compile_shader(const UserShader& shader, std::span<const std::uint32_t> words);

@@ -399,6 +399,25 @@ void fetch_half_texels(const LaneSample& sample, const Image& level, LaneFrame& 
   }
 }
 
+/// Texels of other formats, which have been decoded.
+void fetch_decoded_texels(const LaneSample& sample, const DecodedTexture& texture,
+                          std::size_t level, LaneFrame& frame) {
+  const Image& image = texture.source->levels[level];
+  const float* texels = texture.texels.data() + texture.starts[level];
+  for (int vector = 0; vector < static_cast<int>(sample.vectors); ++vector) {
+    const Ints x =
+        numbers_of(sample.at[0], frame, vector) + numbers_of(sample.offset[0], frame, vector);
+    const Ints y =
+        numbers_of(sample.at[1], frame, vector) + numbers_of(sample.offset[1], frame, vector);
+    const Mask inside = (Mask)(as_bits(x) < static_cast<std::uint32_t>(image.width)) &
+                        (Mask)(as_bits(y) < static_cast<std::uint32_t>(image.height));
+    const Ints at = ((y * image.width + x) * 4) & inside;
+    for (int channel = 0; channel < 4; ++channel) {
+      put_result(sample, channel, frame, vector, as_bits(gather(texels + channel, at, inside)));
+    }
+  }
+}
+
 /// Where a lane samples, of a side of a texture with that many texels.
 SOFTFOCUS_INLINE Floats place_of(const LaneSample& sample, int axis, int size,
                                  const LaneFrame& frame, int vector) {
@@ -476,8 +495,9 @@ void run_sample(const LaneStep& step, LaneFrame& frame) {
     const std::int32_t level = numbers_of(sample.more[0], frame, 0)[0];
     if (level >= 0 && level < std::ssize(from->texture->levels)) {
       const Image& image = from->texture->levels[static_cast<std::size_t>(level)];
-      if (image.format == Format::rgba16f && frame.profile->texture_unit == TextureUnit::standard) {
-        return fetch_half_texels(sample, image, frame);
+      if (image.format == Format::rgba16f) return fetch_half_texels(sample, image, frame);
+      if (from->decoded != nullptr && !from->decoded->are_whole && !from->decoded->texels.empty()) {
+        return fetch_decoded_texels(sample, *from->decoded, static_cast<std::size_t>(level), frame);
       }
     }
   }

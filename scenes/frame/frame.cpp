@@ -13,6 +13,7 @@
 #include "scenes/draw/frame_matrices.h"
 #include "scenes/draw/object_numbers.h"
 #include "scenes/draw/velocity.h"
+#include "scenes/load/pipeline_file.h"
 
 namespace softfocus {
 namespace {
@@ -153,6 +154,7 @@ LensViewInput views_of(const Shot& shot, const DrawnFrame& drawn, const UsedLens
 }  // namespace
 
 MethodChoice find_method_choice(std::string_view name) {
+  if (is_pipeline_name(name)) return {pipeline_method(std::string{name})};
   return {find_method(name), find_lens_view_method(name)};
 }
 
@@ -265,6 +267,10 @@ std::optional<UsedLens> focused_lens(const Shot& shot, const DrawnFrame& drawn, 
     if (const char* error = lens_error(used.lens)) throw LensError(error, used);
   }
   used.aperture_radius_m = aperture_radius_m(used.lens, used.coc_scale);
+  used.settings.frame = {.near_m = shot.scene->camera.near_m,
+                         .far_m = shot.scene->camera.far_m,
+                         .aperture_radius_m = used.aperture_radius_m,
+                         .number = shot.frame};
   PixelCoc& coc = used.settings.coc;
   coc = pixel_coc(used.lens, shot.scene->camera.fov_y_degrees, picture.height, used.coc_scale);
   if (!std::isfinite(coc.radius_at_infinity_px) || !std::isfinite(coc.focus_m)) {

@@ -42,7 +42,8 @@ struct MethodChoice {
   bool takes_any_radius() const { return filter != nullptr && filter->any_radius_costs_the_same; }
 };
 
-/// The method of that name, or, of any other name, auto.
+/// The method of that name, or of the pipeline's file of that name (scenes/load/pipeline_file.h,
+/// which says what is thrown); of any other name, auto.
 MethodChoice find_method_choice(std::string_view name);
 
 /// Which picture is wanted: with depth of field, without, or a map of what it works from.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <variant>
 
+#include "scenes/load/pipeline_file.h"
 #include "scenes/make/shapes.h"
 #include "scenes/temporal/frame_history.h"
 #include "tools/cli/errors.h"
@@ -92,10 +93,12 @@ void check_method(BenchOptions& options, const CLI::App& parser) {
                      (method.is_auto() ? "may draw" : "draws") +
                      " the scene; give a SCENE or --triangles N");
   }
-  if (options.versus != nullptr && name != "pinhole" && !has_shader(name)) {
-    throw UsageError("--vs and --method " + name +
-                     " exclude each other: only two-pass and one-pass have a shader for a driver; "
-                     "--method pinhole compares drawing alone");
+  if (options.versus != nullptr && name != "pinhole" && !has_shader(name) &&
+      !is_pipeline_name(name)) {
+    throw UsageError(
+        "--vs and --method " + name +
+        " exclude each other: only two-pass, one-pass and pipelines have a shader for a driver; "
+        "--method pinhole compares drawing alone");
   }
 }
 

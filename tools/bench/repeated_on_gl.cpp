@@ -9,6 +9,7 @@
 
 #include "tools/gl/effects_on_gl.h"
 #include "tools/gl/filter_on_gl.h"
+#include "tools/gl/pipeline_on_gl.h"
 #include "tools/gl/scene_on_gl.h"
 #include "tools/gl/temporal_on_gl.h"
 
@@ -21,9 +22,10 @@ struct RepeatedOnGl::State {
   Shaders shaders{};
   std::optional<GlScene> scene{};  // with `drawn`
   GlTarget drawn{};
-  GlTarget copy{};                // what copy_and_filter() reads
-  GlTexture uploaded{};           // else
-  std::vector<GlFilter> forms{};  // as in kFilterForms; none: nothing is filtered
+  GlTarget copy{};                         // what copy_and_filter() reads
+  GlTexture uploaded{};                    // else
+  std::vector<GlFilter> forms{};           // as in kFilterForms; none: nothing is filtered
+  std::optional<PipelineOnGl> pipeline{};  // in place of them
 };
 
 RepeatedOnGl::RepeatedOnGl(const Driver& driver, const BenchWork& work, int threads) {
@@ -41,6 +43,20 @@ RepeatedOnGl::RepeatedOnGl(const Driver& driver, const BenchWork& work, int thre
       state.uploaded = upload(work.picture);
     }
     if (work.method.name() == "pinhole") return;
+    if (const Pipeline* pipeline = work.method.filter->pipeline) {
+      // What it reads of the picture besides is the emulation's.
+      ThreadPool pool{threads};
+      const Image picture =
+          work.scene ? draw_scene(*work.scene, work.view, work.frame, width, height, {}, pool)
+                     : work.picture;
+      if (pipeline->by_codes) {
+        throw DriverError(pipeline->name +
+                          ": its texels are sRGB codes; for bench --vs texels = "
+                          "\"linear\" would be right");
+      }
+      state.pipeline.emplace(state.context, *pipeline, DofInput{picture, work.settings, {}});
+      return;
+    }
     for (const FilterForm form : kFilterForms) {
       state.forms.push_back(make_filter(state.context, state.shaders, work.method.name(), form,
                                         work.settings, width, height));
@@ -63,6 +79,7 @@ void RepeatedOnGl::finish() { glFinish(); }
 
 std::vector<std::string> RepeatedOnGl::forms() const {
   std::vector<std::string> names;
+  if (state_->pipeline) names.emplace_back("its GLSL");
   for (std::size_t i = 0; i < state_->forms.size(); ++i) {
     names.emplace_back(form_name(kFilterForms[i]));
   }
@@ -71,8 +88,9 @@ std::vector<std::string> RepeatedOnGl::forms() const {
 
 void RepeatedOnGl::filter(std::size_t form) {
   naming(state_->driver, [&] {
-    run_filter(state_->forms[form],
-               state_->work.scene ? state_->drawn.colour[0] : state_->uploaded);
+    const GlTexture& picture = state_->work.scene ? state_->drawn.colour[0] : state_->uploaded;
+    if (state_->pipeline) return state_->pipeline->run(picture);
+    run_filter(state_->forms[form], picture);
   });
 }
 
@@ -80,12 +98,35 @@ void RepeatedOnGl::copy_and_filter(std::size_t form) {
   naming(state_->driver, [&] {
     const GlTexture& copy = state_->copy.colour[0];
     copy_colour(state_->drawn, copy);
+    if (state_->pipeline) return state_->pipeline->run(copy);
     run_filter(state_->forms[form], copy, &copy);
   });
 }
 
+namespace {
+
+/// A pipeline's result has the picture's depth, whatever it wrote.
+Image with_depths(const GlTarget& result, const Image& picture) {
+  Image read = read_colour(result, 0);
+  if (read.format != picture.format || read.width != picture.width ||
+      read.height != picture.height) {
+    return read;
+  }
+  for (int y = 0; y < read.height; ++y) {
+    const auto to = row<std::uint16_t>(read, y);
+    const auto from = row<std::uint16_t>(picture, y);
+    for (std::size_t i = 3; i < to.size(); i += 4) to[i] = from[i];
+  }
+  return read;
+}
+
+}  // namespace
+
 Image RepeatedOnGl::picture(std::size_t form) const {
   return naming(state_->driver, [&] {
+    if (state_->pipeline)
+      return with_depths(state_->pipeline->result(),
+                         state_->work.scene ? read_colour(state_->drawn, 0) : state_->work.picture);
     if (!state_->forms.empty()) return read_colour(state_->forms[form].targets.back(), 0);
     return state_->work.scene ? read_colour(state_->drawn, 0) : state_->work.picture;
   });

@@ -42,6 +42,11 @@ void set_lens(BenchWork& work, const BenchOptions& options, const FilmedFrom& fr
   settings.coc = checked_pixel_coc(lens, from.fov_y_degrees, options.size.height, coc_scale);
   work.focus_m = lens.focus_m;
   work.aperture_radius_m = aperture_radius_m(lens, coc_scale);
+  settings.frame = {.aperture_radius_m = work.aperture_radius_m, .number = work.frame};
+  if (work.scene) {
+    settings.frame.near_m = work.scene->camera.near_m;
+    settings.frame.far_m = work.scene->camera.far_m;
+  }
   check_arithmetic(options.arithmetic, settings);
 }
 

@@ -6,9 +6,11 @@
 
 #include "scenes/lens_views/lens_points.h"
 #include "scenes/load/load_scene.h"
+#include "scenes/load/pipeline_file.h"
 #include "tools/chart/record.h"
 #include "tools/chart/settings.h"
 #include "tools/cli/errors.h"
+#include "tools/options/method_options.h"
 #include "tools/options/run_options.h"
 
 namespace softfocus {
@@ -27,6 +29,10 @@ void check_methods(const ChartOptions& options) {
   const std::vector<std::string> known = options.subject->methods();
   for (const std::string& name : options.methods) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    if (is_pipeline_name(name) && options.subject->through_lens) {
+      find_named_method("--methods", name);
+      continue;
+    }
     refuse_name("--methods", name, known);
   }
 }

@@ -1,8 +1,12 @@
 #include "tools/chart/settings.h"
 
 #include <algorithm>
+#include <filesystem>
 
+#include "dof/pipelines/pipeline.h"
+#include "scenes/frame/frame.h"
 #include "tools/cli/option_values.h"
+#include "tools/files/hash_text.h"
 #include "tools/files/json.h"
 
 namespace softfocus {
@@ -84,7 +88,7 @@ std::vector<std::string> chart_methods() {
 std::vector<ChartEntry> chart_entries(const std::string& method, int height_px, bool quick) {
   const SettingsOfMethod& of = settings_of(method);
   std::vector<ChartEntry> entries;
-  const Method* const filter = find_method(method);
+  const Method* const filter = find_method_choice(method).filter;
   const LensViewMethod* const of_scene = find_lens_view_method(method);
   if (of_scene != nullptr && !of_scene->samples_lens) {
     return {{.method = method, .of_scene = of_scene}};
@@ -171,6 +175,10 @@ std::string setting_within_series(const ChartEntry& entry) {
 
 std::string entry_id(const ChartEntry& entry) {
   std::string id = entry.method;
+  if (entry.filter != nullptr && entry.filter->pipeline != nullptr) {
+    id = std::filesystem::path{entry.method}.stem().string() + "-" +
+         hash_text(entry.filter->pipeline->hash);
+  }
   if (entry.max_error) return id + "-e" + short_number(*entry.max_error);
   if (entry.of_scene != nullptr) return id;
   if (is_of_pinhole(entry)) {

@@ -37,6 +37,8 @@ struct Case {
 std::vector<Case> crosscheck_cases();
 
 // One function a file.
+/// Of a pipeline's method: pass by pass, and the result. `stage` is its file's name.
+void add_pipeline_cases(const std::string& method, std::vector<Case>& cases);
 void add_store_cases(std::vector<Case>& cases);
 void add_texture_cases(std::vector<Case>& cases);
 void add_triangle_cases(std::vector<Case>& cases);

@@ -7,12 +7,14 @@
 
 #include "raster/threads/parallel.h"
 #include "scenes/files/scene_error.h"
+#include "scenes/load/pipeline_file.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
 #include "tools/crosscheck/run_cases.h"
 #include "tools/files/json.h"
 #include "tools/files/whole_file.h"
+#include "tools/options/method_options.h"
 #include "tools/options/run_options.h"
 
 namespace softfocus {
@@ -27,6 +29,7 @@ struct CrosscheckOptions {
   std::vector<const Driver*> drivers;
   std::optional<ChosenProfile> profile;
   std::string cases = "*";
+  std::string pipeline;
   std::filesystem::path pictures;
   Shaders shaders;
   bool quick = false;
@@ -62,13 +65,13 @@ std::vector<DriverWork> planned_work(const CrosscheckOptions& options) {
   std::vector<DriverWork> work;
   work.reserve(chosen.size());
   for (const Driver* driver : chosen) work.push_back({driver, profile_for(*driver, options), 0});
-  if (matching_cases(options.cases, false, false) == 0) {
+  if (matching_cases(options.cases, options.pipeline, false, false) == 0) {
     throw UsageError("--case '" + options.cases +
                      "' matches no case; names look like coverage/slivers-20000, and "
                      "--case 'coverage/*' takes a whole stage");
   }
   for (DriverWork& one : work) {
-    one.cases = matching_cases(options.cases, options.quick, one.driver->slow);
+    one.cases = matching_cases(options.cases, options.pipeline, options.quick, one.driver->slow);
   }
   return work;
 }
@@ -193,7 +196,7 @@ int crosscheck(const CrosscheckOptions& options) {
       }
       const DriverRun run =
           run_cases({*work.driver, work.profile.profile, options.shaders, options.cases,
-                     options.quick, options.pictures, hardware_threads()},
+                     options.pipeline, options.quick, options.pictures, hardware_threads()},
                     [&](const CaseResult& result) {
                       add(count, result);
                       if (options.json) {
@@ -242,6 +245,15 @@ Command add_crosscheck_command(CLI::App& program) {
                      [options](const ChosenProfile& chosen) { options->profile = chosen; });
   add_text(*parser, "--case", "GLOB", "Only cases whose STAGE/NAME matches, e.g. 'coverage/*'",
            options->cases);
+  add_value(*parser, "--pipeline", "FILE",
+            "Passes of yours in place of all cases, pass by pass (docs/shaders.md)",
+            [options](const std::string& text) {
+              if (!is_pipeline_name(text)) {
+                throw UsageError("--pipeline '" + text + "': FILE.toml would be right");
+              }
+              find_named_method("--pipeline", text);
+              options->pipeline = text;
+            });
   add_shaders_option(*parser, options->shaders);
   add_value(*parser, "--diff", "DIR",
             "Write there a picture and both sides' values of each case that differs",

@@ -3,15 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
 #include "dof/dof.h"
 #include "dof/polygon/polygon_lines.h"
 #include "raster/images/texel.h"
 #include "scenes/draw/draw_scene.h"
+#include "scenes/load/pipeline_file.h"
 #include "tools/crosscheck/cases.h"
 #include "tools/gl/filter_on_gl.h"
 #include "tools/gl/objects.h"
+#include "tools/gl/pipeline_on_gl.h"
 
 namespace softfocus {
 namespace {
@@ -156,6 +159,61 @@ void add_filter_cases(std::vector<Case>& cases) {
   for (const FilterForm form : kFilterForms) {
     for (const char* method : {"two-pass", "one-pass"}) add_filter_cases(method, form, cases);
   }
+}
+
+// A user's pipeline, by both sides.
+
+namespace {
+
+/// A pass, after those before it.
+void run_both(const Bench& bench, Tally& tally, const Pipeline& pipeline, const FilterCase& what,
+              std::size_t wanted) {
+  const Image picture = make_picture(what.picture, what.width, what.height, 4711, bench);
+  const DofInput input{picture, what.settings, bench.profile};
+  PipelineOnGl on_gl{bench.gl, pipeline, input};
+  std::vector<Image> driver;
+  on_gl.run(upload(source_image(pipeline, input, PipelineSource::picture)),
+            [&](std::size_t pass, const GlTarget& made) {
+              if (pass != wanted) return;
+              driver.clear();
+              for (std::size_t i = 0; i < made.colour.size(); ++i) {
+                driver.push_back(read_colour(made, i));
+              }
+            });
+  std::vector<Texture> emulated;
+  Image result = make_image(Format::rgba16f, what.width, what.height);
+  run_pipeline(pipeline, input, result, bench.pool,
+               [&](std::size_t pass, std::span<const Texture> made) {
+                 if (pass == wanted) emulated.assign(made.begin(), made.end());
+               });
+  for (std::size_t i = 0; i < driver.size(); ++i) {
+    add_pictures(tally, driver[i], emulated[i].levels[0],
+                 driver.size() > 1 ? "output " + std::to_string(i) : "");
+  }
+}
+
+}  // namespace
+
+void add_pipeline_cases(const std::string& method, std::vector<Case>& cases) {
+  const Pipeline& pipeline = *pipeline_method(method)->pipeline;
+  const std::string stage = std::filesystem::path{pipeline.name}.stem().string();
+  const auto add = [&](const std::string& name, bool quick, bool slow_too, const FilterCase& what) {
+    for (std::size_t i = 0; i < pipeline.passes.size(); ++i) {
+      const std::string& pass = pipeline.passes[i].name;
+      cases.push_back({stage,
+                       name + "-pass-" + std::to_string(i + 1) + (pass.empty() ? "" : "-" + pass),
+                       quick, slow_too, [&pipeline, what, i](const Bench& bench, Tally& tally) {
+                         run_both(bench, tally, pipeline, what, i);
+                       }});
+    }
+  };
+  add("random-77x41", true, true, {TestPicture::random, 77, 41, focused(9.0f, 2.0f, 6.0f)});
+  add("special-values-64x64", true, true,
+      {TestPicture::special, 64, 64, focused(6.0f, 2.0f, 4.0f)});
+  add("figures-256x256", true, false,
+      {TestPicture::figures, 256, 256, focused(24.0f, 2.0f, 16.0f)});
+  add("cube-room-512x512", false, false,
+      {TestPicture::cube_room, 512, 512, focused(24.0f, 2.0f, 16.0f)});
 }
 
 // Stage `polygon`: the lines of pentagonal and hexagonal, and what is left of their pictures, by

@@ -19,7 +19,7 @@ namespace {
 DriverRun run_cases(const CrosscheckWork&, const std::function<void(const CaseResult&)>&) {
   refuse();
 }
-int matching_cases(const std::string&, bool, bool) { refuse(); }
+int matching_cases(const std::string&, const std::string&, bool, bool) { refuse(); }
 
 Probe probe_driver(const Driver&) { refuse(); }
 

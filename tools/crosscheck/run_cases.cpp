@@ -11,9 +11,15 @@
 namespace softfocus {
 namespace {
 
-std::vector<Case> chosen_cases(const std::string& pattern, bool quick, bool slow) {
-  std::vector<Case> chosen;
-  for (Case& one : crosscheck_cases()) {
+std::vector<Case> chosen_cases(const std::string& pattern, const std::string& pipeline, bool quick,
+                               bool slow) {
+  std::vector<Case> all, chosen;
+  if (pipeline.empty()) {
+    all = crosscheck_cases();
+  } else {
+    add_pipeline_cases(pipeline, all);
+  }
+  for (Case& one : all) {
     const std::string name = one.stage + '/' + one.name;
     const bool wanted = (one.quick || !quick) && (one.slow_too || !slow);
     if (wanted && ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0) chosen.push_back(one);
@@ -90,7 +96,7 @@ void compare_all(const CrosscheckWork& work, const SendLine& send) {
   send(json_text({{"renderer", gl.renderer() + ", OpenGL " + gl.version()}}));
   ThreadPool pool{work.threads};
   const Bench bench{gl, work.shaders, work.profile, pool};
-  for (const Case& one : chosen_cases(work.cases, work.quick, work.driver.slow)) {
+  for (const Case& one : chosen_cases(work.cases, work.pipeline, work.quick, work.driver.slow)) {
     Tally tally;
     std::string error;
     bool has_picture = false;
@@ -124,8 +130,8 @@ DriverRun run_cases(const CrosscheckWork& work,
   return run;
 }
 
-int matching_cases(const std::string& pattern, bool quick, bool slow) {
-  return static_cast<int>(chosen_cases(pattern, quick, slow).size());
+int matching_cases(const std::string& pattern, const std::string& pipeline, bool quick, bool slow) {
+  return static_cast<int>(chosen_cases(pattern, pipeline, quick, slow).size());
 }
 
 }  // namespace softfocus

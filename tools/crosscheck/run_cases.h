@@ -31,6 +31,7 @@ struct CrosscheckWork {
   Profile profile;
   Shaders shaders;
   std::string cases = "*";  ///< a pattern for "stage/name"
+  std::string pipeline{};   ///< a method's name: its cases in place of all others
   bool quick = false;
   /// The folder for differing cases: the picture, and both sides' values. Empty: none.
   std::filesystem::path pictures;
@@ -47,7 +48,7 @@ struct DriverRun {
 DriverRun run_cases(const CrosscheckWork& work,
                     const std::function<void(const CaseResult&)>& report);
 
-/// How many cases the pattern stands for, on a driver of that speed.
-int matching_cases(const std::string& pattern, bool quick, bool slow);
+/// How many cases the pattern stands for, of all or of a pipeline, on a driver of that speed.
+int matching_cases(const std::string& pattern, const std::string& pipeline, bool quick, bool slow);
 
 }  // namespace softfocus

@@ -299,6 +299,10 @@ PictureNotes notes_of(const ApplyOptions& options, const OpenedPicture& opened) 
   for (const std::string& file : options.shaders.files) {
     notes.effects.push_back("shader " + std::filesystem::path{file}.filename().string());
   }
+  if (options.shaders.pipeline) {
+    notes.effects.push_back("pipeline " +
+                            std::filesystem::path{*options.shaders.pipeline}.filename().string());
+  }
   for (const ChosenEffect& chosen : all_effects(options.effects)) {
     notes.effects.push_back(effect_text(chosen));
   }
@@ -436,10 +440,11 @@ Command add_apply_command(CLI::App& program) {
   return {
       parser, [parser, options] {
         settle_format(*parser, options->output, options->format);
-        if (options->shaders.files.empty() && all_effects(options->effects).empty()) {
+        if (options->shaders.files.empty() && !options->shaders.pipeline &&
+            all_effects(options->effects).empty()) {
           throw UsageError(
-              "there is nothing to apply; give --shader, --effect (softfocus effects) or "
-              "--tone-map");
+              "there is nothing to apply; give --shader, --pipeline, --effect (softfocus effects) "
+              "or --tone-map");
         }
         if (const auto of_frames = effect_of_frames(all_effects(options->effects), "--effect")) {
           throw UsageError("--effect " + std::string{of_frames->effect->name} +

@@ -16,18 +16,20 @@ struct ShaderOptions {
   std::vector<std::string> files{};            ///< GLSL or SPIR-V, one after the other
   std::vector<std::string> settings{};         ///< NAME=NUMBER,...
   std::vector<std::string> textures{};         ///< NAME=FILE
+  std::optional<std::string> pipeline{};       ///< behind them
   std::optional<GlslConvention> convention{};  ///< none: recognised
 };
 
-/// Adds --shader, --set, --texture and --convention.
+/// Adds --shader, --pipeline, --set, --texture and --convention.
 void add_shader_options(CLI::App& parser, ShaderOptions& options);
 
-/// The files of the shaders and of their textures.
+/// The files of the shaders, of their textures and of the pipeline.
 std::vector<std::string> shader_inputs(const ShaderOptions& options);
 
 /// The picture, RGBA16F with its depth in alpha, behind the shaders. A shader by a convention gets
 /// and gives sRGB codes of 8 bits, the lowest row first, as a browser has them; others get and give
-/// the picture as it is. The depth stays. Throws UsageError, FileError, ShaderError.
+/// the picture as it is. The depth stays. Throws UsageError, FileError, SceneError,
+/// ShaderError.
 Image with_shaders(const ShaderOptions& options, Image picture, const Profile& profile,
                    ThreadPool& pool);
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cassert>
+#include <cstring>
 
 #include "raster/images/texel.h"
 
@@ -188,10 +190,7 @@ GlTexture upload(const Texture& texture, const Sampler& sampler) {
                  image.width, image.height, 0, format.layout, format.type, packed(image).data());
   }
   set_parameter(GL_TEXTURE_MAX_LEVEL, static_cast<GLint>(texture.levels.size()) - 1);
-  set_parameter(GL_TEXTURE_MIN_FILTER, minification(sampler.filter));
-  set_parameter(GL_TEXTURE_MAG_FILTER, sampler.filter == Filter::nearest ? GL_NEAREST : GL_LINEAR);
-  set_parameter(GL_TEXTURE_WRAP_S, wrap_mode(sampler.wrap_u));
-  set_parameter(GL_TEXTURE_WRAP_T, wrap_mode(sampler.wrap_v));
+  set_sampler(name, sampler);
   check_error("uploading a texture");
   return name;
 }
@@ -270,16 +269,15 @@ void wait_for(const GlTarget& target) {
   read_bound_framebuffer(target.formats[0], 1, 1);
 }
 
-GlProgram link_program(const GlContext& context, const Shaders& shaders, std::string_view vertex,
-                       std::string_view fragment, const std::string& defines) {
-  const std::string header = context.shader_header() + defines;
-  const std::array sources{shader_source(shaders, vertex), shader_source(shaders, fragment)};
-  unsigned& known = context.programs()[header + sources[0].text + sources[1].text];
+namespace {
+
+GlProgram link_sources(const GlContext& context, const std::array<ShaderSource, 2>& sources) {
+  unsigned& known = context.programs()[sources[0].text + sources[1].text];
   if (known != 0) return {known};
   const GlProgram program{glCreateProgram()};
   for (const std::size_t i : {0u, 1u}) {
     const GLenum stage = i == 0 ? GL_VERTEX_SHADER : GL_FRAGMENT_SHADER;
-    const GLuint shader = compile(stage, header + sources[i].text, sources[i].files);
+    const GLuint shader = compile(stage, sources[i].text, sources[i].files);
     glAttachShader(program, shader);
     glDeleteShader(shader);  // with the program
   }
@@ -290,11 +288,27 @@ GlProgram link_program(const GlContext& context, const Shaders& shaders, std::st
     std::array<char, 512> log{};
     glGetProgramInfoLog(program, static_cast<GLsizei>(log.size()), nullptr, log.data());
     const std::string complaint = log.data();
-    throw ShaderError("linking " + std::string(vertex) + " and " + std::string(fragment) + ": " +
+    throw ShaderError("linking " + sources[0].files[0] + " and " + sources[1].files[0] + ": " +
                       complaint.substr(0, complaint.find('\n')));
   }
   known = program;
   return program;
+}
+
+}  // namespace
+
+GlProgram link_program(const GlContext& context, const Shaders& shaders, std::string_view vertex,
+                       std::string_view fragment, const std::string& defines) {
+  std::array sources{shader_source(shaders, vertex), shader_source(shaders, fragment)};
+  for (ShaderSource& source : sources) {
+    source.text.insert(0, context.shader_header() + defines);
+  }
+  return link_sources(context, sources);
+}
+
+GlProgram link_texts(const GlContext& context, const ShaderSource& vertex,
+                     const ShaderSource& fragment) {
+  return link_sources(context, {vertex, fragment});
 }
 
 void set_uniform(const GlProgram& program, const char* name, int value) {
@@ -323,6 +337,62 @@ void set_uniform(const GlProgram& program, const char* name, const glm::mat3& va
 }
 void set_uniform(const GlProgram& program, const char* name, const glm::mat4& value) {
   glUniformMatrix4fv(location(program, name), 1, GL_FALSE, &value[0][0]);
+}
+
+void set_uniform(const GlProgram& program, const ShaderUniform& of,
+                 std::span<const std::uint32_t> words) {
+  const GLint at = location(program, of.name.c_str());
+  const auto count = static_cast<GLsizei>(std::max(of.count, 1u));
+  if (of.kind == SpirvKind::floating && of.columns > 1) {
+    using Set = void (*)(GLint, GLsizei, const GLfloat*);
+    static constexpr Set kSetMatrix[3][3] = {
+        {[](GLint l, GLsizei n, const GLfloat* v) { glUniformMatrix2fv(l, n, GL_FALSE, v); },
+         [](GLint l, GLsizei n, const GLfloat* v) { glUniformMatrix2x3fv(l, n, GL_FALSE, v); },
+         [](GLint l, GLsizei n, const GLfloat* v) { glUniformMatrix2x4fv(l, n, GL_FALSE, v); }},
+        {[](GLint l, GLsizei n, const GLfloat* v) { glUniformMatrix3x2fv(l, n, GL_FALSE, v); },
+         [](GLint l, GLsizei n, const GLfloat* v) { glUniformMatrix3fv(l, n, GL_FALSE, v); },
+         [](GLint l, GLsizei n, const GLfloat* v) { glUniformMatrix3x4fv(l, n, GL_FALSE, v); }},
+        {[](GLint l, GLsizei n, const GLfloat* v) { glUniformMatrix4x2fv(l, n, GL_FALSE, v); },
+         [](GLint l, GLsizei n, const GLfloat* v) { glUniformMatrix4x3fv(l, n, GL_FALSE, v); },
+         [](GLint l, GLsizei n, const GLfloat* v) { glUniformMatrix4fv(l, n, GL_FALSE, v); }}};
+    std::vector<float> values(words.size());
+    std::memcpy(values.data(), words.data(), words.size_bytes());
+    return kSetMatrix[of.columns - 2][of.rows - 2](at, count, values.data());
+  }
+  if (of.kind == SpirvKind::floating) {
+    std::vector<float> values(words.size());
+    std::memcpy(values.data(), words.data(), words.size_bytes());
+    switch (of.rows) {
+      case 1: return glUniform1fv(at, count, values.data());
+      case 2: return glUniform2fv(at, count, values.data());
+      case 3: return glUniform3fv(at, count, values.data());
+      default: return glUniform4fv(at, count, values.data());
+    }
+  }
+  if (of.kind == SpirvKind::integer && !of.is_signed) {
+    switch (of.rows) {
+      case 1: return glUniform1uiv(at, count, words.data());
+      case 2: return glUniform2uiv(at, count, words.data());
+      case 3: return glUniform3uiv(at, count, words.data());
+      default: return glUniform4uiv(at, count, words.data());
+    }
+  }
+  std::vector<GLint> values(words.size());
+  for (std::size_t i = 0; i < words.size(); ++i) values[i] = std::bit_cast<GLint>(words[i]);
+  switch (of.rows) {
+    case 1: return glUniform1iv(at, count, values.data());
+    case 2: return glUniform2iv(at, count, values.data());
+    case 3: return glUniform3iv(at, count, values.data());
+    default: return glUniform4iv(at, count, values.data());
+  }
+}
+
+void set_sampler(const GlTexture& texture, const Sampler& sampler) {
+  bind_for_work(texture);
+  set_parameter(GL_TEXTURE_MIN_FILTER, minification(sampler.filter));
+  set_parameter(GL_TEXTURE_MAG_FILTER, sampler.filter == Filter::nearest ? GL_NEAREST : GL_LINEAR);
+  set_parameter(GL_TEXTURE_WRAP_S, wrap_mode(sampler.wrap_u));
+  set_parameter(GL_TEXTURE_WRAP_T, wrap_mode(sampler.wrap_v));
 }
 
 void set_texture(const GlProgram& program, const char* name, int unit, const GlTexture& texture) {

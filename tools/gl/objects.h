@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "raster/images/sampler.h"
+#include "raster/shaders/lower_spirv.h"
 #include "tools/gl/driver/api.h"
 #include "tools/gl/driver/context.h"
 #include "tools/gl/shaders.h"
@@ -91,6 +92,10 @@ void wait_for(const GlTarget& target);
 GlProgram link_program(const GlContext& context, const Shaders& shaders, std::string_view vertex,
                        std::string_view fragment, const std::string& defines = {});
 
+/// The same of texts that have their version; `files` are for errors.
+GlProgram link_texts(const GlContext& context, const ShaderSource& vertex,
+                     const ShaderSource& fragment);
+
 /// Uniforms of the program in use; one that the compiler dropped is passed over.
 void set_uniform(const GlProgram& program, const char* name, int value);
 void set_uniform(const GlProgram& program, const char* name, float value);
@@ -101,6 +106,11 @@ void set_uniform(const GlProgram& program, const char* name, glm::vec4 value);
 void set_uniform(const GlProgram& program, const char* name, std::span<const float> values);
 void set_uniform(const GlProgram& program, const char* name, const glm::mat3& value);
 void set_uniform(const GlProgram& program, const char* name, const glm::mat4& value);
+/// By its words, as ShaderUniforms has them.
+void set_uniform(const GlProgram& program, const ShaderUniform& of,
+                 std::span<const std::uint32_t> words);
+/// How a texture is sampled from now on.
+void set_sampler(const GlTexture& texture, const Sampler& sampler);
 /// Binds a texture to a unit and the sampler uniform to it.
 void set_texture(const GlProgram& program, const char* name, int unit, const GlTexture& texture);
 

@@ -7,6 +7,7 @@
 #include "dof/parameters.h"
 #include "raster/numbers/parameter_text.h"
 #include "scenes/filtered_views/filtered_views.h"
+#include "scenes/load/pipeline_file.h"
 #include "scenes/parameters.h"
 #include "scenes/warped_views/warped_views.h"
 #include "tools/cli/errors.h"
@@ -64,11 +65,35 @@ std::vector<std::string> all_methods() {
   return names;
 }
 
+MethodChoice find_named_method(const std::string& option, const std::string& name) {
+  if (!is_pipeline_name(name)) return find_method_choice(name);
+  try {
+    const MethodChoice method = find_method_choice(name);
+    for (const std::string& warning : warnings_of(*method.filter)) warn(warning);
+    return method;
+  } catch (const std::runtime_error& error) {
+    throw UsageError(option + ": " + error.what());
+  }
+}
+
+std::vector<std::string> listed_methods(const std::string& text,
+                                        const std::vector<std::string>& known) {
+  std::vector<std::string> names = listed_names("--methods", text);
+  for (const std::string& name : names) {
+    if (is_pipeline_name(name)) {
+      find_named_method("--methods", name);
+    } else if (std::find(known.begin(), known.end(), name) == known.end()) {
+      refuse_name("--methods", name, known);
+    }
+  }
+  return names;
+}
+
 void add_method_option(CLI::App& parser, const Method*& method) {
   add_value(parser, "--method", "NAME",
             "Depth-of-field method (default: " + std::string{method->name} + ")",
             [&method](const std::string& text) {
-              method = find_method(text);
+              method = find_named_method("--method", text).filter;
               if (method == nullptr) refuse_name("--method", text, names_in(methods()));
             });
   offer(parser, "--method", [] { return names_in(methods()); });
@@ -81,7 +106,7 @@ void add_method_option(CLI::App& parser, MethodChoice& method) {
                      ? "; two-pass with --gl, a driver's --profile, --arithmetic or --leak)"
                      : ")"),
             [&method](const std::string& text) {
-              method = find_method_choice(text);
+              method = find_named_method("--method", text);
               if (method.filter != nullptr || text == kAutoMethod) return;
               if (method.of_scene == nullptr) refuse_name("--method", text, all_methods());
               if (!method.of_scene->missing.empty()) {

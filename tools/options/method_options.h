@@ -35,6 +35,14 @@ inline constexpr std::string_view kBudgetMethod = "importance-ordered";
 /// The names of both tables, then `auto`.
 std::vector<std::string> all_methods();
 
+/// As find_method_choice(); tells the warnings of a pipeline. Throws UsageError for one that is at
+/// fault.
+MethodChoice find_named_method(const std::string& option, const std::string& name);
+
+/// Of --methods, with a comma between two: `known` ones and pipelines.
+std::vector<std::string> listed_methods(const std::string& text,
+                                        const std::vector<std::string>& known);
+
 /// Adds --method for filters; `method` holds the default.
 void add_method_option(CLI::App& parser, const Method*& method);
 

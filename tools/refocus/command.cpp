@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "scenes/load/pipeline_file.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
@@ -116,6 +117,11 @@ void check_outputs(const RefocusOptions& options) {
   if (!options.depth.empty())
     inputs.push_back({options.depth, options.circles ? "the circles" : "its depth"});
   if (options.reading.mask) inputs.push_back({*options.reading.mask, "the mask"});
+  if (options.method.filter != nullptr) {
+    for (const std::string& file : files_of(*options.method.filter)) {
+      inputs.push_back({file, "a file of the pipeline"});
+    }
+  }
   check_not_read("-o", options.output, inputs);
   if (const auto sidecar = sidecar_place(options.output, options.format))
     check_not_read("the sidecar of -o", *sidecar, inputs);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "raster/numbers/half.h"
+#include "scenes/load/pipeline_file.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
 #include "tools/files/whole_file.h"
@@ -64,6 +65,11 @@ Json method_json(const RenderOptions& options, const RenderRecord& record) {
 void check_outputs(const RenderOptions& options, const Scene& scene) {
   std::vector<ReadFile> inputs;
   for (const auto& file : scene.files) inputs.push_back({file, "a file of the scene"});
+  if (options.method.filter != nullptr) {
+    for (const std::string& file : files_of(*options.method.filter)) {
+      inputs.push_back({file, "a file of the pipeline"});
+    }
+  }
   if (!options.profile_file.empty()) inputs.push_back({options.profile_file, "the profile"});
   for (const auto& [name, text] : options.shaders.own) {
     inputs.push_back({options.shaders.folder / name, "a shader"});

@@ -47,6 +47,9 @@ FrameWork work_of(const RenderOptions& options, FrameNumber number, const Scene&
   for (const auto& [name, text] : options.shaders.own) {
     work.inputs.push_back(options.shaders.folder / name);
   }
+  if (options.method.filter != nullptr) {
+    for (const std::string& file : files_of(*options.method.filter)) work.inputs.emplace_back(file);
+  }
   if (options.output != "-") work.outputs = {options.output};
   if (const auto sidecar = sidecar_place(options)) work.outputs.push_back(*sidecar);
   for (std::size_t layer = 2; options.show != Show::image && layer <= layers_of(options); ++layer) {

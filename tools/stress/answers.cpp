@@ -248,7 +248,7 @@ Image method_picture(const std::string& method, const StressFrame& frame, Thread
 
 /// While the shutter is open a filter of depth of field has no part; the pinhole shows an instant.
 bool can_answer(const std::string& method, const StressFrame& frame) {
-  if (!frame.scene) return find_method(method) != nullptr;
+  if (!frame.scene) return find_method_choice(method).filter != nullptr;
   const bool is_shadow = find_shadow_answer(method) != nullptr;
   if (is_shadow || frame.scene->shadows) return is_shadow && frame.scene->shadows;
   const bool is_relief = is_relief_answer(method);

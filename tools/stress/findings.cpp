@@ -8,8 +8,12 @@
 #include <functional>
 #include <limits>
 
+#include "dof/pipelines/pipeline.h"
+#include "scenes/frame/frame.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
+#include "tools/files/hash_text.h"
+#include "tools/options/method_options.h"
 #include "tools/report/laboratory.h"
 #include "tools/stress/answers.h"
 #include "tools/stress/trial_record.h"
@@ -36,7 +40,7 @@ void add_stress_options(CLI::App& parser, StressOptions& options) {
   add_value(parser, "--methods", "A,B,...",
             "Methods (default: all; each case takes those that it is for)",
             [&options](const std::string& text) {
-              options.methods = listed_names("--methods", text, stress_methods());
+              options.methods = listed_methods(text, stress_methods());
             });
   offer(parser, "--methods", stress_methods);
   add_value(parser, "--cases", "A,B,...", "Cases (default: all)",
@@ -142,7 +146,9 @@ class TrialWork {
   }
 
   LabContender answer(const std::string& method) {
-    return {.name = method,
+    const Method* const filter = find_method_choice(method).filter;
+    const bool is_users = filter != nullptr && filter->pipeline != nullptr;
+    return {.name = is_users ? method + " " + hash_text(filter->pipeline->hash) : method,
             .stage = std::string{first().of.name} + ", " + std::string{first().of.parameter.name} +
                      " " + short_number(severity_) + ": " + method,
             .kind = method,
@@ -265,7 +271,7 @@ std::vector<StressResult> measure_stress(const StressOptions& options, ThreadPoo
   // Views of the lens take about as long as fifty filters.
   for (const std::string& method : options.methods) {
     work.lab.left.plan(method, static_cast<double>(trials),
-                       find_method(method) != nullptr ? 1.0 : 50.0);
+                       find_method_choice(method).filter != nullptr ? 1.0 : 50.0);
   }
   for (const CaseGroup& group : groups) {
     const std::size_t count = work.results[group.front()].severities.size();

@@ -112,6 +112,31 @@ void add_messages(std::string_view log, const std::string& name, Messages& messa
   throw ShaderError(why);
 }
 
+/// Drivers know no names in `#line`, and want `#extension` before all else.
+std::string text_for_drivers(const GlslText& text) {
+  std::string extensions, rest;
+  int conditions = 0;
+  const auto add = [&](std::string_view from) {
+    while (!from.empty()) {
+      std::string_view line = from.substr(0, from.find('\n'));
+      from.remove_prefix(std::min(from.size(), line.size() + 1));
+      if (line.starts_with("#line ")) line = line.substr(0, line.find(" \""));
+      if (line == "layout(std140) uniform;" ||
+          line == "#extension GL_GOOGLE_include_directive : enable") {
+        continue;
+      }
+      if (line.starts_with("#if")) ++conditions;
+      if (line.starts_with("#endif")) --conditions;
+      std::string& to = line.starts_with("#extension") && conditions == 0 ? extensions : rest;
+      to += line;
+      to += '\n';
+    }
+  };
+  for (const std::string* part : {&text.before, &text.text, &text.after}) add(*part);
+  return text.version.substr(std::min(text.version.find('#'), text.version.size())) + extensions +
+         rest;
+}
+
 CompiledGlsl compiled(const GlslSource& source, GlslText text, bool is_relaxed) {
   const EShLanguage stage = source.stage == ShaderStage::vertex ? EShLangVertex : EShLangFragment;
   glslang::TShader shader(stage);
@@ -153,6 +178,7 @@ CompiledGlsl compiled(const GlslSource& source, GlslText text, bool is_relaxed) 
   if (out.words.size() < 5) refuse(messages, text, source.name);
   out.words[1] = kSpirv10;
   out.convention = text.convention;
+  out.text = text_for_drivers(text);
   out.files = std::move(text.files);
   out.parameters = std::move(text.parameters);
   out.warnings = std::move(messages.warnings);

@@ -66,6 +66,8 @@ struct CompiledGlsl {
   std::vector<std::uint32_t> words{};
   GlslConvention convention{};       ///< never `recognised`
   std::vector<std::string> files{};  ///< that were included
+  /// The shader for a driver: with its version, what it includes and what the convention declares.
+  std::string text{};
   std::vector<GlslParameter> parameters{};
   std::vector<std::string> warnings{};  ///< "FILE:LINE: ..."
 };

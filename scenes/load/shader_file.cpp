@@ -1,0 +1,59 @@
+#include "scenes/load/shader_file.h"
+
+#include <cstring>
+#include <optional>
+#include <utility>
+
+#include "raster/shaders/shader_error.h"
+#include "scenes/files/file_bytes.h"
+
+namespace softfocus {
+namespace {
+
+constexpr std::size_t kMostShaderBytes = std::size_t{1} << 24;
+
+bool is_spirv(const std::string& bytes) {
+  return bytes.starts_with("\x03\x02\x23\x07") || bytes.starts_with("\x07\x23\x02\x03");
+}
+
+std::optional<std::string> read_include(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return {};
+  return read_file_bytes(path, kMostGlslBytes);
+}
+
+}  // namespace
+
+OpenedShader open_shader(const std::filesystem::path& file, GlslConvention convention,
+                         ShaderStage stage) {
+  check_no_pipe(file);
+  std::string bytes = read_file_bytes(file, kMostShaderBytes);
+  if (!is_spirv(bytes)) {
+    return open_shader_text(file.string(), std::move(bytes), convention, stage);
+  }
+  const std::vector<std::byte> words{
+      reinterpret_cast<const std::byte*>(bytes.data()),
+      reinterpret_cast<const std::byte*>(bytes.data()) + bytes.size()};
+  OpenedShader opened;
+  opened.shader = make_shader(spirv_words(words));
+  opened.files.push_back(file.string());
+  return opened;
+}
+
+OpenedShader open_shader_text(std::string name, std::string text, GlslConvention convention,
+                              ShaderStage stage) {
+  if (!missing_glsl().empty()) throw ShaderError(name + ": " + std::string{missing_glsl()});
+  const GlslSource source{
+      .stage = stage, .name = std::move(name), .text = std::move(text), .convention = convention};
+  CompiledGlsl compiled = compile_glsl(source, read_include);
+  OpenedShader opened{make_shader(std::move(compiled.words)),
+                      compiled.convention,
+                      std::move(compiled.parameters),
+                      std::move(compiled.warnings),
+                      std::move(compiled.text),
+                      std::move(compiled.files)};
+  opened.files.push_back(source.name);
+  return opened;
+}
+
+}  // namespace softfocus

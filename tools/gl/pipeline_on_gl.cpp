@@ -1,0 +1,152 @@
+#include "tools/gl/pipeline_on_gl.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+#include <utility>
+
+#include "tools/gl/driver/driver.h"
+
+namespace softfocus {
+namespace {
+
+std::string glsl_type(const SpirvModule& module, const SpirvType& type) {
+  const bool is_vector = type.kind == SpirvKind::vector;
+  const SpirvType& number = is_vector ? module.type(type.element) : type;
+  const bool is_float = number.kind == SpirvKind::floating;
+  if (!is_float && number.kind != SpirvKind::integer) return {};
+  if (!is_vector) return is_float ? "float" : number.is_signed ? "int" : "uint";
+  return (is_float ? "vec" : number.is_signed ? "ivec" : "uvec") + std::to_string(type.count);
+}
+
+/// A triangle over the target for a fragment shader whose inputs are the place in the picture, as
+/// run_shader() has them: u, v, 0, 1.
+ShaderSource vertex_text(const PipelinePass& pass, const std::string& version) {
+  const SpirvModule& module = *pass.shader.module;
+  std::string head = version, body;
+  for (const auto& [id, variable] : module.variables) {
+    if (variable.storage != SpirvStorage::input) continue;
+    const auto decorations = module.decorations.find(id);
+    if (decorations == module.decorations.end() || decorations->second.builtin >= 0) continue;
+    const SpirvDecorations& of = decorations->second;
+    const SpirvType& type = module.pointed(variable.type);
+    const std::string name = glsl_type(module, type);
+    if (name.empty()) {
+      throw DriverError(pass.where + ": the input '" + of.name +
+                        "' is no vector; for drivers a vector would be right");
+    }
+    if (of.location >= 0) head += "layout(location = " + std::to_string(of.location) + ") ";
+    if (of.is_flat) head += "flat ";
+    head.append("out ").append(name).append(" ").append(of.name).append(";\n");
+    const std::string parts = "xyzw";
+    const std::size_t count = type.kind == SpirvKind::vector ? type.count : 1;
+    body.append("  ").append(of.name).append(" = ").append(name);
+    body.append("(vec4(at * 0.5 + 0.5, 0.0, 1.0).").append(parts.substr(0, count)).append(");\n");
+  }
+  return {head +
+              "void main() {\n"
+              "  vec2 at = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);\n"
+              "  gl_Position = vec4(at, 0.0, 1.0);\n" +
+              body + "}\n",
+          {"the triangle of " + pass.where}};
+}
+
+GlProgram link_pass(const GlContext& context, const PipelinePass& pass) {
+  if (pass.text.empty()) {
+    throw DriverError(pass.where + ": it is SPIR-V; for drivers GLSL would be right");
+  }
+  const SpirvModule& module = *pass.shader.module;
+  for (const auto& [id, variable] : module.variables) {
+    if (variable.storage == SpirvStorage::uniform) {
+      throw DriverError(
+          pass.where +
+          ": it has uniform blocks; for drivers uniforms by themselves would be right");
+    }
+  }
+  const std::string version = pass.text.substr(0, pass.text.find('\n') + 1);
+  const bool is_es = version.find(" es") != version.npos;
+  const int number = std::atoi(version.c_str() + std::string{"#version "}.size());
+  if (is_es ? number < 300 : number < 140) {
+    throw DriverError(pass.where + ": " + version.substr(0, version.size() - 1) +
+                      " has no vertex numbers; for drivers 1.40 or ES 3.00 would be right");
+  }
+  return link_texts(context, vertex_text(pass, version), {pass.text, {pass.where}});
+}
+
+}  // namespace
+
+PipelineOnGl::PipelineOnGl(const GlContext& context, const Pipeline& pipeline,
+                           const DofInput& input)
+    : pipeline_(pipeline), drawn_(pipeline.passes.size()) {
+  std::vector<PassRun> runs = pass_runs(pipeline, input);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const PipelinePass& pass = pipeline.passes[i];
+    Pass made{link_pass(context, pass), std::move(runs[i]), {}};
+    for (std::size_t k = 0; k < std::min<std::size_t>(made.run.words.size(), 2); ++k) {
+      made.targets.push_back(make_target(pass.targets, made.run.width, made.run.height, false));
+    }
+    passes_.push_back(std::move(made));
+    for (const PipelineInput& of : pass.inputs) {
+      const bool is_depth =
+          of.source == PipelineSource::depth || of.source == PipelineSource::buffer_depth;
+      if (is_depth && !depths_.contains(of.source)) {
+        depths_.emplace(of.source, upload(source_image(pipeline, input, of.source)));
+      }
+    }
+  }
+  textures_.reserve(pipeline.textures.size());
+  for (const Texture& texture : pipeline.textures) textures_.push_back(upload(texture, Sampler{}));
+}
+
+const GlTexture& PipelineOnGl::texture_of(const PipelineInput& input,
+                                          const GlTexture& picture) const {
+  switch (input.source) {
+    case PipelineSource::picture: return picture;
+    case PipelineSource::depth:
+    case PipelineSource::buffer_depth: return depths_.at(input.source);
+    case PipelineSource::texture: return textures_[input.number];
+    case PipelineSource::pass:
+      if (drawn_[input.number] != nullptr) return drawn_[input.number]->colour[input.output];
+      break;
+    case PipelineSource::previous: break;
+  }
+  return last_ != nullptr ? last_->colour[0] : picture;
+}
+
+void PipelineOnGl::draw(std::size_t number, std::size_t turn, const GlTexture& picture) {
+  const PipelinePass& of = pipeline_.passes[number];
+  const Pass& pass = passes_[number];
+  const std::vector<std::uint32_t>& words = pass.run.words[turn];
+  int unit = 0;
+  for (const ShaderUniform& uniform : of.shader.uniforms.all) {
+    if (!is_texture(uniform)) {
+      set_uniform(pass.program, uniform, std::span{words}.subspan(uniform.first, uniform.words));
+      continue;
+    }
+    for (const PipelineInput& input : of.inputs) {
+      if (input.texture != words[uniform.first]) continue;
+      const GlTexture& texture = texture_of(input, picture);
+      if (input.sampler.filter == Filter::trilinear && input.source != PipelineSource::texture) {
+        generate_levels(texture);
+      }
+      set_sampler(texture, input.sampler);
+      set_texture(pass.program, uniform.name.c_str(), unit++, texture);
+    }
+  }
+  const GlTarget& target = pass.targets[turn % pass.targets.size()];
+  draw_fullscreen(target, pass.program);
+  drawn_[number] = last_ = &target;
+}
+
+void PipelineOnGl::run(const GlTexture& picture, const OnPass& on_pass) {
+  std::fill(drawn_.begin(), drawn_.end(), nullptr);
+  last_ = nullptr;
+  for (std::size_t i = 0; i < passes_.size(); ++i) {
+    for (std::size_t turn = 0; turn < passes_[i].run.words.size(); ++turn) {
+      draw(i, turn, picture);
+      if (on_pass) on_pass(i, *last_);
+    }
+  }
+}
+
+}  // namespace softfocus
