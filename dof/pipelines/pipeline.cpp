@@ -7,7 +7,6 @@
 
 #include "dof/pipelines/picture_codes.h"
 #include "raster/images/texel.h"
-#include "raster/shaders/shader_error.h"
 
 namespace softfocus {
 
@@ -138,8 +137,8 @@ void bind_rest(Pipeline& pipeline, PipelinePass& pass, const ShaderProgram& prog
       input = PipelineInput{};
       if (used[number]) {
         if (!left.empty()) {
-          fail(pass, "the shader reads textures '" + left + "' and '" + of.name + "'; " +
-                         std::string{how_to_name});
+          throw UnnamedTextures(pass.where + ": the shader reads textures '" + left + "' and '" +
+                                of.name + "'; " + std::string{how_to_name});
         }
         left = of.name;
       }

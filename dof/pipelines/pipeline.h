@@ -16,6 +16,7 @@
 #include "dof/pipelines/expression.h"
 #include "raster/images/sampler.h"
 #include "raster/shaders/shader.h"
+#include "raster/shaders/shader_error.h"
 
 namespace softfocus {
 
@@ -125,9 +126,14 @@ std::vector<std::string> source_names(const Pipeline& pipeline);
 /// (iResolution, cameraNear). Throws ShaderError for a shader of another stage.
 PipelinePass& add_pass(Pipeline& pipeline, std::string where, UserShader shader);
 
+/// Several textures are left without a source.
+struct UnnamedTextures : ShaderError {
+  using ShaderError::ShaderError;
+};
+
 /// Where what has no input yet gets its texels: from what has its name (a pass, a texture,
 /// "picture", "depth", "buffer_depth"); the one that is left from what was drawn last. Compiles
-/// everything once. Throws ShaderError, also if several are left: `how_to_name` says what to do.
+/// everything once. Throws ShaderError, and UnnamedTextures: `how_to_name` says what to do.
 void finish_pipeline(Pipeline& pipeline, std::string_view how_to_name);
 
 /// Whether anything depends on the lens.

@@ -15,10 +15,12 @@
 namespace softfocus {
 namespace {
 
-/// Lanes that run together: as many as keep registers in a core's second cache.
-int lanes_for(const ShaderProgram& program) {
+/// Lanes that run together: as many as keep registers in a core's second cache, and as a row has
+/// pixels.
+int lanes_for(const ShaderProgram& program, int width) {
   constexpr std::size_t kBytes = std::size_t{96} << 10;
   int lanes = 256;
+  while (lanes > 32 && lanes / 2 >= width * (program.has_derivatives ? 2 : 1)) lanes /= 2;
   while (lanes > 32 &&
          program.varying_count * std::size_t{4} * static_cast<unsigned>(lanes) > kBytes) {
     lanes /= 2;
@@ -49,7 +51,7 @@ class Run {
       height_ = target.height;
     }
     decode_textures();
-    lanes_ = pass.lanes != 0 ? pass.lanes : lanes_for(program);
+    lanes_ = pass.lanes != 0 ? pass.lanes : lanes_for(program, width_);
     lane_program_ = lane_program(program, lanes_, pool.isa());
     for (const auto& output : program.outputs) {
       if (output.output.builtin >= 0) continue;

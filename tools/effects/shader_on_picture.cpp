@@ -123,7 +123,12 @@ Pipeline pipeline_of(const ShaderOptions& options, const std::string& file, Open
   add_constants(pass, opened.parameters);
   for (const std::string& setting : options.settings) set_uniform(setting, pass);
   bind_files(options, pipeline, pass);
-  finish_pipeline(pipeline, "give all but one with --texture NAME=FILE, the other is the picture");
+  try {
+    finish_pipeline(pipeline,
+                    "give all but one with --texture NAME=FILE, the other is the picture");
+  } catch (const UnnamedTextures& error) {
+    throw UsageError(error.what());
+  }
   return pipeline;
 }
 
