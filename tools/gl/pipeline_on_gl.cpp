@@ -1,8 +1,10 @@
 #include "tools/gl/pipeline_on_gl.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "tools/gl/driver/driver.h"
@@ -19,11 +21,34 @@ std::string glsl_type(const SpirvModule& module, const SpirvType& type) {
   return (is_float ? "vec" : number.is_signed ? "ivec" : "uvec") + std::to_string(type.count);
 }
 
+/// A shader's version, as its first line says it.
+struct DriverVersion {
+  std::string line{};
+  int number = 0;
+  bool is_es = false;
+
+  /// in and out in place of varying, and numbers of vertices.
+  bool has_outputs() const { return number >= (is_es ? 300 : 130); }
+};
+
+DriverVersion version_of(const PipelinePass& pass) {
+  DriverVersion version{.line = pass.text.substr(0, pass.text.find('\n') + 1)};
+  version.is_es = version.line.find(" es") != version.line.npos;
+  version.number = std::atoi(version.line.c_str() + std::string_view{"#version "}.size());
+  version.is_es = version.is_es || version.number == 100;
+  return version;
+}
+
+constexpr const char* kCorner = "softfocus_corner";
+
 /// A triangle over the target for a fragment shader whose inputs are the place in the picture, as
 /// run_shader() has them: u, v, 0, 1.
-ShaderSource vertex_text(const PipelinePass& pass, const std::string& version) {
+ShaderSource vertex_text(const PipelinePass& pass) {
   const SpirvModule& module = *pass.shader.module;
-  std::string head = version, body;
+  const DriverVersion version = version_of(pass);
+  const std::string in = version.has_outputs() ? "in" : "attribute";
+  const std::string out = version.has_outputs() ? "out " : "varying ";
+  std::string head = version.line + in + " vec2 " + kCorner + ";\n", body;
   for (const auto& [id, variable] : module.variables) {
     if (variable.storage != SpirvStorage::input) continue;
     const auto decorations = module.decorations.find(id);
@@ -35,19 +60,18 @@ ShaderSource vertex_text(const PipelinePass& pass, const std::string& version) {
       throw DriverError(pass.where + ": the input '" + of.name +
                         "' is no vector; for drivers a vector would be right");
     }
-    if (of.location >= 0) head += "layout(location = " + std::to_string(of.location) + ") ";
+    if (of.location >= 0) {
+      head.append("layout(location = ").append(std::to_string(of.location)).append(") ");
+    }
     if (of.is_flat) head += "flat ";
-    head.append("out ").append(name).append(" ").append(of.name).append(";\n");
+    head.append(out).append(name).append(" ").append(of.name).append(";\n");
     const std::string parts = "xyzw";
     const std::size_t count = type.kind == SpirvKind::vector ? type.count : 1;
     body.append("  ").append(of.name).append(" = ").append(name);
-    body.append("(vec4(at * 0.5 + 0.5, 0.0, 1.0).").append(parts.substr(0, count)).append(");\n");
+    body.append("(vec4(").append(kCorner).append(" * 0.5 + 0.5, 0.0, 1.0).");
+    body.append(parts.substr(0, count)).append(");\n");
   }
-  return {head +
-              "void main() {\n"
-              "  vec2 at = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);\n"
-              "  gl_Position = vec4(at, 0.0, 1.0);\n" +
-              body + "}\n",
+  return {head + "void main() {\n  gl_Position = vec4(" + kCorner + ", 0.0, 1.0);\n" + body + "}\n",
           {"the triangle of " + pass.where}};
 }
 
@@ -63,14 +87,7 @@ GlProgram link_pass(const GlContext& context, const PipelinePass& pass) {
           ": it has uniform blocks; for drivers uniforms by themselves would be right");
     }
   }
-  const std::string version = pass.text.substr(0, pass.text.find('\n') + 1);
-  const bool is_es = version.find(" es") != version.npos;
-  const int number = std::atoi(version.c_str() + std::string{"#version "}.size());
-  if (is_es ? number < 300 : number < 140) {
-    throw DriverError(pass.where + ": " + version.substr(0, version.size() - 1) +
-                      " has no vertex numbers; for drivers 1.40 or ES 3.00 would be right");
-  }
-  return link_texts(context, vertex_text(pass, version), {pass.text, {pass.where}});
+  return link_texts(context, vertex_text(pass), {pass.text, {pass.where}});
 }
 
 }  // namespace
@@ -94,6 +111,12 @@ PipelineOnGl::PipelineOnGl(const GlContext& context, const Pipeline& pipeline,
       }
     }
   }
+  constexpr std::array kCorners{-1.0f, -1.0f, 3.0f, -1.0f, -1.0f, 3.0f};
+  GLuint corners = 0;
+  glGenBuffers(1, &corners);
+  corners_ = GlBuffer{corners};
+  glBindBuffer(GL_ARRAY_BUFFER, corners_);
+  glBufferData(GL_ARRAY_BUFFER, sizeof kCorners, kCorners.data(), GL_STATIC_DRAW);
   textures_.reserve(pipeline.textures.size());
   for (const Texture& texture : pipeline.textures) textures_.push_back(upload(texture, Sampler{}));
 }
@@ -134,7 +157,12 @@ void PipelineOnGl::draw(std::size_t number, std::size_t turn, const GlTexture& p
     }
   }
   const GlTarget& target = pass.targets[turn % pass.targets.size()];
+  const auto corner = static_cast<GLuint>(glGetAttribLocation(pass.program, kCorner));
+  glBindBuffer(GL_ARRAY_BUFFER, corners_);
+  glEnableVertexAttribArray(corner);
+  glVertexAttribPointer(corner, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
   draw_fullscreen(target, pass.program);
+  glDisableVertexAttribArray(corner);
   drawn_[number] = last_ = &target;
 }
 

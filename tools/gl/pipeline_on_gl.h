@@ -16,7 +16,7 @@ namespace softfocus {
 class PipelineOnGl {
  public:
   /// Throws ShaderError for what the driver refuses, DriverError for what no driver is given:
-  /// SPIR-V, uniform blocks, GLSL of versions without in and out.
+  /// SPIR-V, uniform blocks, inputs that are no vectors.
   PipelineOnGl(const GlContext& context, const Pipeline& pipeline, const DofInput& input);
 
   /// Told what a pass made, after each of its turns.
@@ -37,6 +37,7 @@ class PipelineOnGl {
 
   const Pipeline& pipeline_;
   std::vector<Pass> passes_{};
+  GlBuffer corners_{};
   std::vector<GlTexture> textures_{};
   std::map<PipelineSource, GlTexture> depths_{};
   std::vector<const GlTarget*> drawn_{};  ///< of each pass

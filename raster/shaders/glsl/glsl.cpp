@@ -106,8 +106,10 @@ void add_messages(std::string_view log, const std::string& name, Messages& messa
   if (text.convention != GlslConvention::plain) {
     why += " (taken as " + std::string(name_of(text.convention)) + ")";
   } else if (!text.said_version) {
-    why += text.taken_as.is_es ? " (no #version: taken as GLSL ES 1.00)"
-                               : " (no #version: taken as GLSL 1.10)";
+    const int number = text.taken_as.number;
+    why += " (no #version: taken as GLSL ";
+    if (text.taken_as.is_es) why += "ES ";
+    why += std::to_string(number / 100) + "." + std::to_string(number / 10 % 10) + "0)";
   }
   throw ShaderError(why);
 }

@@ -306,6 +306,21 @@ GlslVersion raised_version(const GlslVersion& version, GlslConvention convention
   return {number, false, number >= 150 ? "compatibility" : ""};
 }
 
+namespace {
+
+/// Inputs and outputs as `in` and `out`, which are parameters' in versions before 1.30.
+bool has_global_outputs(std::span<const GlslToken> tokens) {
+  int depth = 0;
+  for (const GlslToken& token : tokens) {
+    if (token.text == "{" || token.text == "(") ++depth;
+    if (token.text == "}" || token.text == ")") --depth;
+    if (depth == 0 && (token.text == "in" || token.text == "out")) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 GlslVersion version_of(GlslConvention convention, std::span<const GlslToken> tokens) {
   GlslVersion es3{300, true, "es"}, es1{100, true, ""};
   switch (convention) {
@@ -317,8 +332,12 @@ GlslVersion version_of(GlslConvention convention, std::span<const GlslToken> tok
   }
   // Precisions are WebGL's, whose version without a #version is ES 1.00.
   for (const char* const word : {"precision", "highp", "mediump", "lowp", "GL_ES"}) {
-    if (uses(tokens, word)) return has_es3_words(tokens) ? es3 : es1;
+    if (uses(tokens, word)) {
+      return has_es3_words(tokens) || has_global_outputs(tokens) ? es3 : es1;
+    }
   }
+  if (uses(tokens, "precise")) return {400, false, "core"};
+  if (has_global_outputs(tokens)) return {330, false, "core"};
   return {110, false, ""};
 }
 
@@ -334,6 +353,15 @@ GlslSurroundings glsl_surroundings(GlslConvention convention, const GlslSource& 
     if (!version.is_es && version.number < 420) {
       around.before = "#extension GL_ARB_shading_language_420pack : enable\n" + around.before;
     }
+  }
+  // WebGL's compilers take what is not constant there.
+  if (version.is_es) {
+    around.before =
+        "#extension GL_EXT_shader_non_constant_global_initializers : enable\n" + around.before;
+  }
+  // Reserved in ES 3.00, and browsers take it all the same.
+  if (version.is_es && version.number < 320 && uses(tokens, "sample")) {
+    around.before += "#define sample softfocus_sample\n";
   }
   // glslang knows these, and makes no SPIR-V of them. Noise is 0 with every driver.
   if (!version.is_es && uses(tokens, "ftransform")) {
