@@ -157,8 +157,12 @@ void Lowering::add_inputs(SpirvId id, const SpirvDecorations& of) {
     return;
   }
   if (tree_.inputs.size() + what.scalars > kMostScalars) refuse("inputs have too many numbers");
+  const SpirvType* number = &what;
+  while (number->kind != SpirvKind::integer && number->element != 0)
+    number = &type(number->element);
   add_numbers(id, of, [&](int location, int component, int part) {
-    tree_.inputs.push_back({of.builtin, location, component, part, of.is_flat, of.is_linear});
+    tree_.inputs.push_back({of.builtin, location, component, part, of.is_flat, of.is_linear,
+                            number->kind == SpirvKind::integer});
   });
 }
 
