@@ -32,6 +32,8 @@ struct ShaderChunk {
 struct FragmentInput {
   enum class From : std::uint8_t { pipeline, vertex, builtin } from{};
   std::size_t number = 0;  ///< among those that are interpolated; of a vertex's values
+  SpirvBuiltin builtin{};
+  int part = 0;  ///< of the built-in
 };
 
 // Fragments that wait to be shaded together.
@@ -64,7 +66,7 @@ struct ShadersRecorded {
   std::vector<ShaderVarying> varyings{};    ///< of each vertex's values
   std::vector<std::size_t> interpolated{};  ///< of the values, those that are; ~0: clip w
   std::vector<GroupKinds> kinds{};          ///< a group each
-  std::vector<FragmentInput> inputs{};      ///< as the fragment program has them
+  std::vector<FragmentInput> inputs{};      ///< of the fragment program, without uniforms
   std::array<std::array<ShaderRegister, 4>, kMaxColourTargets> outputs{};
   std::array<bool, kMaxColourTargets> has_output{};
   ShaderRegister depth_output{};
@@ -88,14 +90,16 @@ struct ShadersRecorded {
                        {.textures = of.vertex_textures,
                         .profile = pass.profile,
                         .budget = of.budget,
-                        .lanes = of.lanes},
+                        .lanes = of.lanes,
+                        .uniforms = of.vertex_uniforms},
                        pass.isa),
         fragment_batches(*of.fragment,
                          {.textures = of.fragment_textures,
                           .profile = pass.profile,
                           .budget = of.budget,
                           .lanes = of.lanes,
-                          .y_is_up = of.clip_space == ShaderClipSpace::y_up},
+                          .y_is_up = of.clip_space == ShaderClipSpace::y_up,
+                          .uniforms = of.fragment_uniforms},
                          pass.isa),
         positions(vertex_count),
         chunks(chunk_count) {
@@ -106,6 +110,7 @@ struct ShadersRecorded {
     if (draw.texel.most_w) interpolated.push_back(~std::size_t{0});
     std::vector<Interpolation> of_each(interpolated.size(), Interpolation::perspective);
     for (const ShaderProgram::Input& input : of.fragment->inputs) {
+      if (input.input.uniform >= 0) continue;
       inputs.push_back(input_of(input.input, of_each));
     }
     kinds.resize(std::max<std::size_t>(1, (of_each.size() + kGroup - 1) / kGroup));
@@ -117,7 +122,9 @@ struct ShadersRecorded {
 
   FragmentInput input_of(const ShaderInput& input, std::vector<Interpolation>& of_each) {
     using enum FragmentInput::From;
-    if (input.builtin >= 0) return {builtin};
+    if (input.builtin >= 0) {
+      return {builtin, 0, static_cast<SpirvBuiltin>(input.builtin), input.part};
+    }
     const auto same =
         std::find_if(varyings.begin(), varyings.end(), [&](const ShaderVarying& varying) {
           return varying.location == input.location && varying.component == input.component;
@@ -375,12 +382,11 @@ class FragmentBatches {
       }
       case FragmentInput::From::builtin: break;
     }
-    const ShaderInput& input = draw_.draw.fragment->inputs[number].input;
-    switch (static_cast<SpirvBuiltin>(input.builtin)) {
+    switch (of.builtin) {
       case SpirvBuiltin::frag_coord: {
-        if (input.part == 0) return bits(static_cast<float>(fragment.x) + 0.5f);
-        if (input.part == 2) return bits(fragment.depth);
-        if (input.part == 3) return bits(pixel.inverse_w);
+        if (of.part == 0) return bits(static_cast<float>(fragment.x) + 0.5f);
+        if (of.part == 2) return bits(fragment.depth);
+        if (of.part == 3) return bits(pixel.inverse_w);
         const bool is_up = draw_.draw.clip_space == ShaderClipSpace::y_up;
         const int row = is_up ? draw_.height - 1 - fragment.y : fragment.y;
         return bits(static_cast<float>(row) + 0.5f);

@@ -37,6 +37,8 @@ struct ShaderTexel {
 struct ShaderDraw {
   /// Linked (link_shaders.h) before they were compiled.
   std::shared_ptr<const ShaderProgram> vertex{}, fragment{};
+  /// All words of each, for programs with late ones (compile_shader()).
+  std::vector<std::uint32_t> vertex_uniforms{}, fragment_uniforms{};
   std::vector<VertexAttribute> attributes{};  ///< others are 0, 0, 0, 1
   std::vector<ShaderTexture> vertex_textures{}, fragment_textures{};
   ShaderClipSpace clip_space = ShaderClipSpace::y_up;

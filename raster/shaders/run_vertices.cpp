@@ -87,10 +87,13 @@ void run_vertices(const ShaderBatches& batches, const VertexRun& run, std::uint3
 void run_vertices(const ShaderProgram& program, const VertexRun& run, ThreadPool& pool) {
   assert(run.values.size() >= run.varyings.size() * run.vertex_count);
   assert(run.positions.empty() || run.positions.size() >= run.vertex_count);
-  const ShaderBatches batches{
-      program,
-      {.textures = run.textures, .profile = run.profile, .budget = run.budget, .lanes = run.lanes},
-      pool.isa()};
+  const ShaderBatches batches{program,
+                              {.textures = run.textures,
+                               .profile = run.profile,
+                               .budget = run.budget,
+                               .lanes = run.lanes,
+                               .uniforms = run.uniforms},
+                              pool.isa()};
   constexpr std::uint32_t kTogether = 1024;
   const std::uint32_t tasks = (run.vertex_count + kTogether - 1) / kTogether;
   for_each_with<BatchMemory>(pool, static_cast<int>(tasks), [&](int task, BatchMemory& memory) {

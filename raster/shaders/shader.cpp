@@ -163,8 +163,9 @@ const ShaderUniform* find_uniform(const UserShader& shader, std::string_view nam
   return nullptr;
 }
 
-ShaderProgram compile_shader(const UserShader& shader, std::span<const std::uint32_t> words) {
-  ShaderTree tree = lower_spirv(*shader.module, words);
+ShaderProgram compile_shader(const UserShader& shader, std::span<const std::uint32_t> words,
+                             const std::vector<bool>& is_late) {
+  ShaderTree tree = lower_spirv(*shader.module, words, is_late);
   simplify(tree);
   ShaderProgram program = emit_program(tree);
   if (shader.module->stage == ShaderStage::vertex && program.has_derivatives) {

@@ -32,8 +32,11 @@ UserShader make_shader(std::vector<std::uint32_t> words);
 /// The uniform of that name ("tint", "light.colour", "tint[0]" is "tint"), or null.
 const ShaderUniform* find_uniform(const UserShader& shader, std::string_view name);
 
-/// A shader with its uniforms: `words` as ShaderUniforms has them. Throws ShaderError.
-ShaderProgram compile_shader(const UserShader& shader, std::span<const std::uint32_t> words);
+/// A shader with its uniforms: `words` as ShaderUniforms has them. With `is_late`, the words that
+/// it marks are given when the shader runs (BatchSettings::uniforms), and the program is slower.
+/// Throws ShaderError.
+ShaderProgram compile_shader(const UserShader& shader, std::span<const std::uint32_t> words,
+                             const std::vector<bool>& is_late = {});
 
 /// A number that every pixel is given, by an input of the shader.
 struct PassVarying {
@@ -83,6 +86,7 @@ struct VertexRun {
   Profile profile{};
   std::uint64_t budget = std::uint64_t{1} << 24;  ///< as ShaderPass has it
   int lanes = 0;                                  ///< likewise
+  std::span<const std::uint32_t> uniforms{};      ///< all words, for a program with late ones
 };
 
 /// Runs a vertex shader at every vertex. gl_VertexID and gl_VertexIndex are its number, other

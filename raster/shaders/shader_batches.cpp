@@ -1,6 +1,7 @@
 #include "raster/shaders/shader_batches.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstring>
 #include <string>
 
@@ -25,6 +26,7 @@ ShaderBatches::ShaderBatches(const ShaderProgram& program, const BatchSettings& 
       profile_(settings.profile),
       budget_(settings.budget),
       y_is_up_(settings.y_is_up),
+      uniforms_(settings.uniforms.begin(), settings.uniforms.end()),
       isa_(isa),
       lane_program_(
           lane_program(program, settings.lanes != 0 ? settings.lanes : lanes_for(program), isa)),
@@ -60,13 +62,23 @@ void ShaderBatches::begin(BatchMemory& memory) const {
   memory = make_row_memory<float>(lane_program_.bytes / sizeof(float));
   std::memset(memory.get(), 0, lane_program_.bytes);
   for (const ShaderProgram::Constant& constant : program_.constants) {
-    for (int i = 0; i < lane_program_.unit_lanes; ++i) {
-      std::memcpy(place(memory, {constant.number, false, true}) + 4 * i, &constant.bits, 4);
-    }
+    set(memory, {constant.number, false, true}, constant.bits);
+  }
+}
+
+void ShaderBatches::set(const BatchMemory& memory, const ShaderRegister& of,
+                        std::uint32_t bits) const {
+  for (int i = 0; i < lane_program_.unit_lanes; ++i) {
+    std::memcpy(place(memory, of) + 4 * i, &bits, 4);
   }
 }
 
 void ShaderBatches::run_steps(BatchMemory& memory) const {
+  for (const ShaderProgram::Input& of : program_.inputs) {
+    if (of.input.uniform < 0) continue;
+    assert(static_cast<std::size_t>(of.input.uniform) < uniforms_.size());
+    set(memory, of.to, uniforms_[static_cast<std::size_t>(of.input.uniform)]);
+  }
   if (program_.killed.is_there) {
     std::memset(place(memory, program_.killed), 0, lane_program_.register_bytes);
   }

@@ -18,6 +18,8 @@ struct BatchSettings {
   std::uint64_t budget = 0;  ///< turns of loops that a batch may take
   int lanes = 0;             ///< 0: as many as are fastest
   bool y_is_up = false;      ///< dFdy is upwards
+  /// All words, for a program with late ones.
+  std::span<const std::uint32_t> uniforms{};
 };
 
 /// The registers of one thread, made on first use.
@@ -41,12 +43,13 @@ class ShaderBatches {
                       : lane_program_.uniform_at + of.number * lane_program_.uniform_bytes);
   }
 
-  /// fill(input, numbers) gives lanes() numbers for each input. Throws ShaderError if the budget is
-  /// spent.
+  /// fill(input, numbers) gives lanes() numbers for each input that is no uniform. Throws
+  /// ShaderError if the budget is spent.
   template <class Fill>
   void run(BatchMemory& memory, const Fill& fill) const {
     if (!memory) begin(memory);
     for (const ShaderProgram::Input& of : program_.inputs) {
+      if (of.input.uniform >= 0) continue;
       fill(of.input, std::span{reinterpret_cast<std::uint32_t*>(place(memory, of.to)),
                                static_cast<std::size_t>(lanes())});
     }
@@ -58,6 +61,7 @@ class ShaderBatches {
   Profile profile_;
   std::uint64_t budget_;
   bool y_is_up_;
+  std::vector<std::uint32_t> uniforms_;
   Isa isa_;
   LaneProgram lane_program_;
   std::vector<DecodedTexture> decoded_{};
@@ -65,6 +69,8 @@ class ShaderBatches {
 
   void decode_textures();
   void begin(BatchMemory& memory) const;
+  /// Of a register that does not vary.
+  void set(const BatchMemory& memory, const ShaderRegister& of, std::uint32_t bits) const;
   void run_steps(BatchMemory& memory) const;
 };
 

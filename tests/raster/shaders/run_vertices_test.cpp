@@ -85,52 +85,59 @@ TEST_CASE("a vertex shader over lanes gives the bits of the interpreter of one v
                                     {1, 1}, {2, 0}, {2, 1}, {2, 2}, {7, 0}};
   constexpr std::size_t kCount = std::size(varyings);
 
+  // The same, whether uniforms are known when the program is made or when it runs.
   const ShaderProgram program = compile_shader(shader, uniforms);
-  for (const Isa isa : available_isas()) {
-    for (const int lanes : {32, 256}) {
-      ThreadPool pool{3, isa};
-      std::vector<glm::vec4> positions(vertices.size());
-      std::vector<std::uint32_t> values(vertices.size() * kCount);
-      run_vertices(program,
-                   {.vertex_count = 301,
-                    .attributes = attributes,
-                    .textures = textures,
-                    .varyings = varyings,
-                    .positions = positions,
-                    .values = values,
-                    .lanes = lanes},
-                   pool);
-      int differing = 0;
-      for (std::size_t v = 0; v < vertices.size(); ++v) {
-        const Vertex& vertex = vertices[v];
-        test::OracleSettings settings{.uniforms = uniforms, .textures = textures};
-        settings.input = [&](const SpirvDecorations& of, std::uint32_t part) -> std::uint32_t {
-          if (of.builtin == static_cast<int>(SpirvBuiltin::vertex_id) ||
-              of.builtin == static_cast<int>(SpirvBuiltin::vertex_index)) {
-            return static_cast<std::uint32_t>(v);
+  std::vector<bool> is_late(uniforms.size());
+  for (std::uint32_t i = 0; i < turn.words; ++i) is_late[turn.first + i] = true;
+  const ShaderProgram late_program =
+      compile_shader(shader, std::vector<std::uint32_t>(uniforms.size()), is_late);
+  for (const bool is_late_one : {false, true})
+    for (const Isa isa : available_isas()) {
+      for (const int lanes : {32, 256}) {
+        ThreadPool pool{3, isa};
+        std::vector<glm::vec4> positions(vertices.size());
+        std::vector<std::uint32_t> values(vertices.size() * kCount);
+        run_vertices(is_late_one ? late_program : program,
+                     {.vertex_count = 301,
+                      .attributes = attributes,
+                      .textures = textures,
+                      .varyings = varyings,
+                      .positions = positions,
+                      .values = values,
+                      .lanes = lanes,
+                      .uniforms = uniforms},
+                     pool);
+        int differing = 0;
+        for (std::size_t v = 0; v < vertices.size(); ++v) {
+          const Vertex& vertex = vertices[v];
+          test::OracleSettings settings{.uniforms = uniforms, .textures = textures};
+          settings.input = [&](const SpirvDecorations& of, std::uint32_t part) -> std::uint32_t {
+            if (of.builtin == static_cast<int>(SpirvBuiltin::vertex_id) ||
+                of.builtin == static_cast<int>(SpirvBuiltin::vertex_index)) {
+              return static_cast<std::uint32_t>(v);
+            }
+            if (of.builtin >= 0) return 0;
+            const std::uint32_t one = std::bit_cast<std::uint32_t>(1.0f);
+            if (of.location == 0) return std::bit_cast<std::uint32_t>(vertex.at[part]);
+            if (of.location == 1 && part < 2) return static_cast<std::uint32_t>(vertex.kind[part]);
+            if (of.location == 2) return std::bit_cast<std::uint32_t>(vertex.more[part]);
+            if (of.location == 3) return part == 3 ? one : 0;
+            return part == 3 ? 1 : 0;
+          };
+          const test::OracleResult expected = test::run_oracle(*shader.module, settings);
+          for (int i = 0; i < 4; ++i) {
+            differing += std::bit_cast<std::uint32_t>(positions[v][i]) !=
+                         expected.position[static_cast<std::size_t>(i)];
           }
-          if (of.builtin >= 0) return 0;
-          const std::uint32_t one = std::bit_cast<std::uint32_t>(1.0f);
-          if (of.location == 0) return std::bit_cast<std::uint32_t>(vertex.at[part]);
-          if (of.location == 1 && part < 2) return static_cast<std::uint32_t>(vertex.kind[part]);
-          if (of.location == 2) return std::bit_cast<std::uint32_t>(vertex.more[part]);
-          if (of.location == 3) return part == 3 ? one : 0;
-          return part == 3 ? 1 : 0;
-        };
-        const test::OracleResult expected = test::run_oracle(*shader.module, settings);
-        for (int i = 0; i < 4; ++i) {
-          differing += std::bit_cast<std::uint32_t>(positions[v][i]) !=
-                       expected.position[static_cast<std::size_t>(i)];
+          for (std::size_t k = 0; k < kCount; ++k) {
+            const auto location = static_cast<std::size_t>(varyings[k].location);
+            const auto component = static_cast<std::size_t>(varyings[k].component);
+            differing += values[v * kCount + k] != expected.outputs[location][component];
+          }
         }
-        for (std::size_t k = 0; k < kCount; ++k) {
-          const auto location = static_cast<std::size_t>(varyings[k].location);
-          const auto component = static_cast<std::size_t>(varyings[k].component);
-          differing += values[v * kCount + k] != expected.outputs[location][component];
-        }
+        CHECK(differing == 0);
       }
-      CHECK(differing == 0);
     }
-  }
 }
 
 TEST_CASE("varyings without a location are linked by name") {
