@@ -62,8 +62,8 @@ struct Varying {
 
   bool varies(const ShaderTree& tree, const ShaderInstruction& in) const {
     using enum ShaderOp;
-    if (in.op == input || in.op == load_indexed ||
-        (in.op >= derivative_x && in.op <= derivative_y_coarse)) {
+    if (in.op == input) return tree.inputs[in.place].uniform < 0;
+    if (in.op == load_indexed || (in.op >= derivative_x && in.op <= derivative_y_coarse)) {
       return true;
     }
     if (in.op == load) return variables[in.place];

@@ -142,6 +142,10 @@ void Lowering::lower() {
       if (variable.storage == output) add_outputs(globals_[id].first, type, decorations_of(id));
     }
   }
+  late_inputs_ = static_cast<std::uint32_t>(tree_.inputs.size());
+  for (std::size_t i = 0; i < is_late_.size(); ++i) {
+    tree_.inputs.push_back({.uniform = static_cast<int>(i)});
+  }
   Call main{.function = &module_.functions.at(module_.main)};
   run_call(main, tree_.main);
 }
@@ -157,8 +161,12 @@ void Lowering::add_inputs(SpirvId id, const SpirvDecorations& of) {
     return;
   }
   if (tree_.inputs.size() + what.scalars > kMostScalars) refuse("inputs have too many numbers");
+  const SpirvType* number = &what;
+  while (number->kind != SpirvKind::integer && number->element != 0)
+    number = &type(number->element);
   add_numbers(id, of, [&](int location, int component, int part) {
-    tree_.inputs.push_back({of.builtin, location, component, part, of.is_flat, of.is_linear});
+    tree_.inputs.push_back({of.builtin, location, component, part, of.is_flat, of.is_linear,
+                            number->kind == SpirvKind::integer});
   });
 }
 
@@ -189,6 +197,7 @@ ShaderValue Lowering::load_one(ShaderRegion& to, const Place& at, std::uint32_t 
   const std::uint32_t place = at.first + number;
   const bool is_known = at.index == kNoValue;
   using enum Place::In;
+  if (at.in == uniforms && is_any_late(at, place)) return load_input(to, at, late_inputs_ + place);
   if (at.in == uniforms && is_known) return whole(uniforms_[place]);
   if (at.in == variables && is_known) return get(to, place);
   if (at.in == inputs) return load_input(to, at, place);
@@ -217,6 +226,15 @@ ShaderValue Lowering::load_input(ShaderRegion& to, const Place& at, std::uint32_
     chosen = make(to, ShaderOp::select, is, input(place + i * at.stride), chosen);
   }
   return chosen;
+}
+
+bool Lowering::is_any_late(const Place& at, std::uint32_t place) const {
+  if (is_late_.empty()) return false;
+  bool any = is_late_[place];
+  for (std::uint32_t i = 1; i < at.count && at.index != kNoValue; ++i) {
+    any = any || is_late_[place + i * at.stride];
+  }
+  return any;
 }
 
 std::uint32_t Lowering::uniform_table() {
@@ -290,9 +308,10 @@ Place Lowering::chain(ShaderRegion& to, Place at, const std::vector<ShaderValue>
   return at;
 }
 
-ShaderTree lower_spirv(const SpirvModule& module, std::span<const std::uint32_t> words) {
+ShaderTree lower_spirv(const SpirvModule& module, std::span<const std::uint32_t> words,
+                       const std::vector<bool>& is_late) {
   ShaderTree tree;
-  Lowering{module, words, tree}.lower();
+  Lowering{module, words, is_late, tree}.lower();
   return tree;
 }
 

@@ -34,8 +34,10 @@ struct ShaderUniforms {
 
 ShaderUniforms uniforms_of(const SpirvModule& module);
 
-/// The tree of a module whose uniforms are `words`. Throws ShaderError for what is not supported,
-/// and for control flow that is not structured.
-ShaderTree lower_spirv(const SpirvModule& module, std::span<const std::uint32_t> words);
+/// The tree of a module whose uniforms are `words`. Those words that `is_late` marks, if it is not
+/// empty, are known only when the shader runs. Throws ShaderError for what is not supported, and
+/// for control flow that is not structured.
+ShaderTree lower_spirv(const SpirvModule& module, std::span<const std::uint32_t> words,
+                       const std::vector<bool>& is_late = {});
 
 }  // namespace softfocus

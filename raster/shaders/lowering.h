@@ -58,15 +58,18 @@ struct Target {
 
 class Lowering {
  public:
-  Lowering(const SpirvModule& module, Words uniforms, ShaderTree& to)
-      : module_(module), uniforms_(uniforms), tree_(to) {}
+  Lowering(const SpirvModule& module, Words uniforms, const std::vector<bool>& is_late,
+           ShaderTree& to)
+      : module_(module), uniforms_(uniforms), is_late_(is_late), tree_(to) {}
 
   void lower();
 
  private:
   const SpirvModule& module_;
   Words uniforms_;
+  const std::vector<bool>& is_late_;
   ShaderTree& tree_;
+  std::uint32_t late_inputs_ = 0;  ///< the first input that is a uniform; the others follow
   std::map<SpirvId, Place> globals_{};
   std::vector<Target> targets_{};
   std::optional<std::uint32_t> uniform_table_{};
@@ -195,6 +198,7 @@ class Lowering {
   ShaderValue load_one(ShaderRegion& to, const Place& at, std::uint32_t number);
   /// By an index that is not known, all that it may mean are taken.
   ShaderValue load_input(ShaderRegion& to, const Place& at, std::uint32_t place);
+  bool is_any_late(const Place& at, std::uint32_t place) const;
   /// Where the uniforms lie among the tables.
   std::uint32_t uniform_table();
 

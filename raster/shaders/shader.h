@@ -3,7 +3,9 @@
 // targets. docs/shaders.md says what a shader may be, docs/specification.md what each operation
 // gives: the same bits on every machine.
 
+#include <cstddef>
 #include <cstdint>
+#include <glm/vec4.hpp>
 #include <memory>
 #include <optional>
 #include <span>
@@ -20,11 +22,12 @@ namespace softfocus {
 
 /// A shader whose uniforms are not set yet.
 struct UserShader {
-  std::unique_ptr<const SpirvModule> module{};
+  std::unique_ptr<SpirvModule> module{};
   ShaderUniforms uniforms{};
 };
 
-/// Throws ShaderError.
+/// Inputs of a vertex shader and outputs of a fragment shader that have no location get one. Throws
+/// ShaderError.
 UserShader make_shader(std::vector<std::uint32_t> words);
 
 /// The uniform of that name ("tint", "light.colour", "tint[0]" is "tint"), or null.
@@ -38,8 +41,11 @@ inline bool is_texture(const ShaderUniform& of) {
 /// The bits of a number as a uniform of that kind has them; nothing if it cannot be one.
 std::optional<std::uint32_t> uniform_word(const ShaderUniform& of, double value);
 
-/// A shader with its uniforms: `words` as ShaderUniforms has them. Throws ShaderError.
-ShaderProgram compile_shader(const UserShader& shader, std::span<const std::uint32_t> words);
+/// A shader with its uniforms: `words` as ShaderUniforms has them. With `is_late`, the words that
+/// it marks are given when the shader runs (BatchSettings::uniforms), and the program is slower.
+/// Throws ShaderError.
+ShaderProgram compile_shader(const UserShader& shader, std::span<const std::uint32_t> words,
+                             const std::vector<bool>& is_late = {});
 
 /// A number that every pixel is given, by an input of the shader.
 struct PassVarying {
@@ -63,5 +69,37 @@ struct ShaderPass {
 /// y, the first row 0. What a shader does not write is 0, and what it discards stays. Throws
 /// ShaderError if a loop takes more turns than the budget has.
 void run_shader(const ShaderProgram& program, const ShaderPass& pass, ThreadPool& pool);
+
+/// What vertices are given at a location of a vertex shader: numbers of 32 bits, floats or whole
+/// numbers as the shader has them.
+struct VertexAttribute {
+  int location = 0;
+  int components = 4;                ///< 1 to 4; those behind them are 0, 0, 0, 1
+  const std::byte* first = nullptr;  ///< of vertex 0
+  std::size_t stride = 0;            ///< bytes from a vertex to the next
+};
+
+/// A number that goes from a vertex shader to a fragment shader.
+struct ShaderVarying {
+  int location = 0, component = 0;
+};
+
+struct VertexRun {
+  std::uint32_t vertex_count = 0;
+  std::span<const VertexAttribute> attributes{};  ///< others are 0, 0, 0, 1
+  std::span<const ShaderTexture> textures{};      ///< by their numbers
+  std::span<const ShaderVarying> varyings{};      ///< that are wanted
+  std::span<glm::vec4> positions{};               ///< gl_Position of each vertex
+  /// The bits of the varyings: vertex by vertex, each vertex's in the order of `varyings`.
+  std::span<std::uint32_t> values{};
+  Profile profile{};
+  std::uint64_t budget = std::uint64_t{1} << 24;  ///< as ShaderPass has it
+  int lanes = 0;                                  ///< likewise
+  std::span<const std::uint32_t> uniforms{};      ///< all words, for a program with late ones
+};
+
+/// Runs a vertex shader at every vertex. gl_VertexID and gl_VertexIndex are its number, other
+/// built-ins 0. What a shader does not write is 0. Throws ShaderError as run_shader() does.
+void run_vertices(const ShaderProgram& program, const VertexRun& run, ThreadPool& pool);
 
 }  // namespace softfocus

@@ -198,6 +198,8 @@ struct ShaderInput {
   int location = 0, component = 0;  ///< of a varying
   int part = 0;                     ///< of a builtin's vector
   bool is_flat = false, is_linear = false;
+  bool is_whole = false;  ///< an integer
+  int uniform = -1;       ///< a word of the uniforms, if it is known only when the shader runs
 };
 
 /// Where a result comes to lie when the shader ends.

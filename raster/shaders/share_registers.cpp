@@ -119,7 +119,7 @@ class Sharing {
     find_blocks();
     find_live();
     for (const auto& input : program_.inputs) {
-      touch(input.to.number, 0);
+      if (input.to.varies) touch(input.to.number, 0);
     }
     const auto last = 2 * static_cast<std::uint32_t>(program_.steps.size());
     for (const auto& output : program_.outputs) {

@@ -34,6 +34,7 @@ struct OracleSettings {
 struct OracleResult {
   bool is_killed = false, is_stopped = false;             ///< stopped: it ran too many blocks
   std::array<std::array<std::uint32_t, 4>, 8> outputs{};  ///< by location
+  std::array<std::uint32_t, 4> position{};                ///< of a vertex
 };
 
 namespace spirv {
@@ -241,8 +242,18 @@ class Oracle {
     }
     for (const auto& [id, variable] : module_.variables) {
       const SpirvDecorations& of = decorations(id);
-      if (variable.storage != SpirvStorage::output || of.location < 0) continue;
+      if (variable.storage != SpirvStorage::output) continue;
       const Numbers& memory = *globals_.at(id).memory;
+      const std::vector<SpirvDecorations>& members =
+          decorations(module_.type(variable.type).element).members;
+      const auto is_position = [](const SpirvDecorations& decoration) {
+        return decoration.builtin == static_cast<int>(SpirvBuiltin::position);
+      };
+      // In a block it is the first member.
+      if (is_position(of) || (!members.empty() && is_position(members[0]))) {
+        std::copy_n(memory.begin(), 4, result.position.begin());
+      }
+      if (of.location < 0) continue;
       for (std::size_t i = 0; i < memory.size(); ++i) {
         const std::size_t at = static_cast<std::size_t>(of.component) + i % 4;
         result.outputs.at(static_cast<std::size_t>(of.location) + i / 4).at(at) = memory[i];
@@ -728,7 +739,7 @@ class Oracle {
 
 }  // namespace spirv
 
-/// Needs a valid module of a fragment shader without derivatives.
+/// Needs a valid module without derivatives.
 inline OracleResult run_oracle(const SpirvModule& module, const OracleSettings& settings) {
   return spirv::Oracle{module, settings}.run();
 }

@@ -1,0 +1,228 @@
+#include "raster/shaders/link_shaders.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace softfocus {
+namespace {
+
+/// Ports of one storage of a module.
+class Ports {
+ public:
+  Ports(const SpirvModule& module, SpirvStorage storage) : module_(module) {
+    for (const auto& [id, variable] : module.variables) {
+      if (variable.storage == storage) add(variable);
+    }
+  }
+  std::vector<ShaderPort> all{};
+
+ private:
+  const SpirvModule& module_;
+
+  const SpirvDecorations& decorations(SpirvId id) const {
+    static const SpirvDecorations none;
+    const auto found = module_.decorations.find(id);
+    return found == module_.decorations.end() ? none : found->second;
+  }
+
+  void add(const SpirvVariable& variable) {
+    const SpirvDecorations& of = decorations(variable.id);
+    const SpirvId type = module_.type(variable.type).element;
+    const SpirvDecorations& of_type = decorations(type);
+    if (of.builtin >= 0) return;
+    if (module_.type(type).kind != SpirvKind::structure || !of_type.is_block) {
+      ShaderPort port{.name = of.name,
+                      .location = of.location,
+                      .component = of.component,
+                      .is_used = is_used(variable.id),
+                      .of = variable.id};
+      push(std::move(port), type);
+      return;
+    }
+    int location = of.location;
+    const SpirvType& block = module_.type(type);
+    for (std::size_t i = 0; i < block.members.size(); ++i) {
+      static const SpirvDecorations none;
+      const SpirvDecorations& member = i < of_type.members.size() ? of_type.members[i] : none;
+      if (member.builtin >= 0) continue;
+      const bool is_ours = of_type.name.starts_with("gl_");
+      ShaderPort port{.name = is_ours ? member.name : of_type.name + "." + member.name,
+                      .location = member.location >= 0 ? member.location : location,
+                      .component = member.component,
+                      .is_used = is_used(variable.id),
+                      .of = type,
+                      .member = static_cast<int>(i)};
+      push(std::move(port), block.members[i]);
+      if (all.back().location >= 0) location = all.back().location + all.back().locations;
+    }
+  }
+
+  void push(ShaderPort port, SpirvId type) {
+    port.locations = locations(type);
+    add_numbers(type, port.numbers);
+    all.push_back(std::move(port));
+  }
+
+  int locations(SpirvId id) const {
+    const SpirvType& type = module_.type(id);
+    if (type.kind == SpirvKind::array || type.kind == SpirvKind::matrix) {
+      return static_cast<int>(type.count) * locations(type.element);
+    }
+    int sum = 0;
+    for (const SpirvId member : type.members) sum += locations(member);
+    return type.kind == SpirvKind::structure ? sum : 1;
+  }
+
+  void add_numbers(SpirvId id, std::vector<SpirvKind>& to) const {
+    const SpirvType& type = module_.type(id);
+    if (type.kind == SpirvKind::structure) {
+      for (const SpirvId member : type.members) add_numbers(member, to);
+    } else if (type.element == 0) {
+      to.push_back(type.kind);
+    } else {
+      for (std::uint32_t i = 0; i < type.count; ++i) add_numbers(type.element, to);
+    }
+  }
+
+  bool is_used(SpirvId id) const {
+    for (const auto& [number, function] : module_.functions) {
+      for (const SpirvBlock& block : function.blocks) {
+        for (const SpirvInstruction& in : block.instructions) {
+          if (std::find(in.operands.begin(), in.operands.end(), id) != in.operands.end()) {
+            return true;
+          }
+        }
+      }
+    }
+    return false;
+  }
+};
+
+/// The first location that no port has from there on.
+int free_location(const std::vector<ShaderPort>& ports) {
+  int free = 0;
+  for (const ShaderPort& port : ports) {
+    if (port.location >= 0) free = std::max(free, port.location + port.locations);
+  }
+  return free;
+}
+
+void set_location(SpirvModule& module, ShaderPort& port, int location) {
+  SpirvDecorations* of = &module.decorations[port.of];
+  if (port.member >= 0) {
+    const auto member = static_cast<std::size_t>(port.member);
+    if (of->members.size() <= member) of->members.resize(member + 1);
+    of = &of->members[member];
+  }
+  of->location = port.location = location;
+}
+
+/// The name that a fragment shader's input has in the vertex shader.
+std::string_view name_before(std::string_view name) {
+  if (name == "gl_Color") return "gl_FrontColor";
+  if (name == "gl_SecondaryColor") return "gl_FrontSecondaryColor";
+  return name;
+}
+
+const std::string* name_of_kind(SpirvKind kind) {
+  static const std::string floating = "floats", integer = "integers", boolean = "booleans";
+  return kind == SpirvKind::floating ? &floating : kind == SpirvKind::integer ? &integer : &boolean;
+}
+
+std::string in_words(const ShaderPort& port) {
+  return std::to_string(port.numbers.size()) + " " + *name_of_kind(port.numbers.front());
+}
+
+std::string named(const ShaderPort& port) {
+  if (!port.name.empty()) return "'" + port.name + "'";
+  return "location " + std::to_string(port.location);
+}
+
+[[noreturn]] void refuse_input(const ShaderPort& input, const std::vector<ShaderPort>& outputs) {
+  std::string why = "the vertex shader has no output " + named(input) +
+                    ", which the fragment shader reads; it has ";
+  if (outputs.empty()) why += "none";
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    if (i != 0) why += ", ";
+    why += named(outputs[i]);
+  }
+  throw ShaderError(why);
+}
+
+/// Arrays of the compatibility profile are as long as the shader uses them.
+bool fits(const ShaderPort& output, const ShaderPort& input) {
+  return output.numbers == input.numbers ||
+         (input.name.starts_with("gl_") && output.numbers.front() == input.numbers.front());
+}
+
+}  // namespace
+
+std::vector<ShaderPort> inputs_of(const SpirvModule& module) {
+  return Ports{module, SpirvStorage::input}.all;
+}
+std::vector<ShaderPort> outputs_of(const SpirvModule& module) {
+  return Ports{module, SpirvStorage::output}.all;
+}
+
+void give_locations(SpirvModule& module) {
+  std::vector<ShaderPort> ports =
+      module.stage == ShaderStage::vertex ? inputs_of(module) : outputs_of(module);
+  for (ShaderPort& port : ports) {
+    if (port.location < 0) set_location(module, port, free_location(ports));
+  }
+}
+
+void link_shaders(UserShader& vertex, UserShader& fragment) {
+  if (vertex.module->stage != ShaderStage::vertex ||
+      fragment.module->stage != ShaderStage::fragment) {
+    throw ShaderError("a vertex shader and a fragment shader are right, in this order");
+  }
+  std::vector<ShaderPort> outputs = outputs_of(*vertex.module);
+  std::vector<ShaderPort> inputs = inputs_of(*fragment.module);
+  int free = std::max(free_location(outputs), free_location(inputs));
+  for (ShaderPort& input : inputs) {
+    const auto by_location = [&](const ShaderPort& output) {
+      return input.location >= 0 && output.location == input.location &&
+             output.component == input.component;
+    };
+    const auto by_name = [&](const ShaderPort& output) {
+      return !input.name.empty() && output.name == name_before(input.name);
+    };
+    auto found = std::find_if(outputs.begin(), outputs.end(), by_location);
+    if (found == outputs.end()) found = std::find_if(outputs.begin(), outputs.end(), by_name);
+    if (found == outputs.end()) {
+      if (input.is_used) refuse_input(input, outputs);
+      if (input.location < 0) {
+        set_location(*fragment.module, input, free);
+        free += input.locations;
+      }
+      continue;
+    }
+    if (!fits(*found, input)) {
+      throw ShaderError(named(input) + " has " + in_words(*found) + " in the vertex shader and " +
+                        in_words(input) + " in the fragment shader; they must be equal");
+    }
+    if (found->location < 0) {
+      const int location = input.location >= 0 ? input.location : free;
+      set_location(*vertex.module, *found, location);
+      if (location == free) free += std::max(found->locations, input.locations);
+    }
+    if (input.location != found->location) {
+      set_location(*fragment.module, input, found->location);
+    }
+  }
+  for (ShaderPort& output : outputs) {
+    if (output.location >= 0) continue;
+    set_location(*vertex.module, output, free);
+    free += output.locations;
+  }
+}
+
+ShaderPair make_shader_pair(std::vector<std::uint32_t> vertex_words,
+                            std::vector<std::uint32_t> fragment_words) {
+  ShaderPair made{make_shader(std::move(vertex_words)), make_shader(std::move(fragment_words))};
+  link_shaders(made.vertex, made.fragment);
+  return made;
+}
+
+}  // namespace softfocus
