@@ -249,6 +249,8 @@ TEST_CASE("an include that cannot be is an error where the preprocessor comes to
   CHECK(error_with(source) == "none");
   source.text = "\n#include \"none\"\nvoid main() {}\n";
   CHECK(error_with(source) == "mine.frag:2: #include none: cannot read none");
+  source.text = "#error softfocus_missing_include\n#include \"none\"\n";
+  CHECK(error_with(source).starts_with("mine.frag:1: '#error': softfocus_missing_include"));
   source.text = "#include \"/etc/passwd\"\nvoid main() {}\n";
   CHECK(error_with(source) == "mine.frag:1: #include /etc/passwd: the path must be relative");
   source.text = "#include \"a\"\nvoid main() {}\n";
