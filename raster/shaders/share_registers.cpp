@@ -34,7 +34,8 @@ std::vector<std::uint32_t> reads_of(const ShaderProgram& program) {
   return reads;
 }
 
-/// `v = a b` and soon after `w = v + c`, with v used nowhere else: one step.
+/// `v = a b` and soon after `w = v + c`, with v used nowhere else: one step. One step alone makes
+/// each of a, b and v, so none between makes them anew.
 void join_products(ShaderProgram& program) {
   constexpr std::size_t kFarthest = 16;
   const std::vector<std::uint32_t> reads = reads_of(program);
@@ -66,7 +67,6 @@ void join_products(ShaderProgram& program) {
         program.steps[i].to = program.steps[i].a = program.steps[i].b = {};
         break;
       }
-      if (is(step.to, product.a) || is(step.to, product.b) || is(step.to, product.to)) break;
     }
   }
 }

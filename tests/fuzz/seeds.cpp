@@ -268,6 +268,54 @@ void put_shaders(const fs::path& all) {
   }
 }
 
+/// The first byte is '0' + a number whose remainder by 6 is the convention's: 0 is recognised.
+void put_glsl(const fs::path& all) {
+  const Seeds glsl{all, "glsl"};
+  const auto recognised = [&](const std::string& name, const std::string& text) {
+    glsl.put(name, "0" + text);
+  };
+  recognised("old",
+             "#define TWICE(a) ((a) + (a))\nuniform sampler2D t;\nvarying vec2 v;\n"
+             "void main() { gl_FragColor = texture2D(t, TWICE(v)) * 0.5; }\n");
+  recognised("new",
+             "#version 330\nstruct Light { vec3 at; float power[2]; };\nuniform Light light;\n"
+             "uniform sampler2D t;\nin vec2 v;\nout vec4 o;\n"
+             "float f(inout vec2 p, int i) { p += light.at.xy; return light.power[i & 1]; }\n"
+             "void main() {\n  vec2 p = v;\n  for (int i = 0; i < 4; ++i) {\n"
+             "    if (f(p, i) > 1.0) continue;\n    o += textureLod(t, p, float(i));\n  }\n"
+             "  switch (int(v.x * 4.0)) { case 0: o = -o; break; case 1: discard; default: o.x++; }"
+             "\n}\n");
+  recognised("es",
+             "#version 300 es\nprecision mediump float;\nlayout(std140) uniform B { mat3 m; "
+             "float a[3]; };\nout vec4 o;\nvoid main() {\n"
+             "  mat3 n = inverse(m) * transpose(m);\n"
+             "  o = vec4(n[1], a[int(n[0].x)]) + vec4(uintBitsToFloat(packHalf2x16(n[2].xy)));\n"
+             "}\n");
+  recognised("conditions",
+             "#version 450\n#include \"a\"\n#if defined(A) && A##1 > 2 || !defined B\n"
+             "#elif __VERSION__ == 450\n#else\n#error no\n#endif\n#line 7\nout vec4 o;\n"
+             "const vec2 k[2][2] = vec2[][](vec2[](vec2(1), vec2(2)), vec2[](vec2(3), vec2(4)));\n"
+             "void main() { o = k[0] == k[1] ? vec4(1) : dFdx(gl_FragCoord.yxwz); }\n");
+  recognised("toy",
+             "void mainImage(out vec4 c, in vec2 at) {\n  vec2 uv = at / iResolution.xy;\n"
+             "  c = texture(iChannel0, uv) + sin(iTime) * vec4(mod(uv, 0.3), fract(uv));\n}\n");
+  recognised("three",
+             "#include <common>\n#include <packing>\nvarying vec2 vUv;\nuniform sampler2D tDepth;\n"
+             "void main() { gl_FragColor = vec4(unpackRGBAToDepth(texture2D(tDepth, vUv))); }\n");
+  recognised("transition",
+             "uniform float size; // = 0.5\nvec4 transition(vec2 uv) {\n"
+             "  return mix(getFromColor(uv), getToColor(uv), progress * size);\n}\n");
+  recognised("libretro",
+             "#pragma parameter GAIN \"Gain\" 1.0 0.5 2.0 0.05\n#if defined(VERTEX)\n"
+             "#elif defined(FRAGMENT)\nuniform float GAIN;\n"
+             "void main() { gl_FragColor = vec4(GAIN); }\n#endif\n");
+  recognised("slang",
+             "#version 450\nlayout(push_constant) uniform Push { vec4 SourceSize; } params;\n"
+             "layout(set = 0, binding = 2) uniform sampler2D Source;\n#pragma stage fragment\n"
+             "layout(location = 0) out vec4 o;\n"
+             "void main() { o = texelFetch(Source, ivec2(params.SourceSize.xy), 0); }\n");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -284,6 +332,7 @@ int main(int argc, char** argv) {
   put_sums(all);
   put_reliefs(all);
   put_shaders(all);
+  put_glsl(all);
   const Seeds scenes{all, "scene"};
   for (const fs::directory_entry& entry : fs::directory_iterator{argv[3]}) {
     if (entry.path().extension() == ".toml") scenes.copy(entry.path());

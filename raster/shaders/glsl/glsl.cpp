@@ -96,10 +96,12 @@ void add_messages(std::string_view log, const std::string& name, Messages& messa
   }
   if (const std::size_t found = why.find(kMissingInclude); found != std::string::npos) {
     std::size_t number = 0;
-    const char* const digits = why.data() + found + kMissingInclude.size() + 1;
-    std::from_chars(digits, why.data() + why.size(), number);
+    // A user's text may have the word, too.
+    const std::size_t digits = std::min(found + kMissingInclude.size() + 1, why.size());
+    const bool is_number =
+        std::from_chars(why.data() + digits, why.data() + why.size(), number).ec == std::errc{};
     const std::size_t error = why.rfind("'#error': ", found);
-    if (number < text.missing_includes.size() && error != std::string::npos) {
+    if (is_number && number < text.missing_includes.size() && error != std::string::npos) {
       throw ShaderError(why.substr(0, error) + text.missing_includes[number]);
     }
   }

@@ -75,8 +75,8 @@ struct CompiledGlsl {
 /// What a text may have at the most, with all that it includes.
 inline constexpr std::size_t kMostGlslBytes = std::size_t{1} << 20;
 
-/// Throws ShaderError, "FILE:LINE: ...". Any number of threads may call it at once. There is no
-/// limit of time: macros that expand to ever more macros take as long as they take.
+/// Throws ShaderError, "FILE:LINE: ...". Any number of threads may call it at once. What would
+/// take glslang's stack or minutes is refused beforehand (docs/shaders.md, "Limits").
 CompiledGlsl compile_glsl(const GlslSource& source, const GlslReader& read);
 
 /// Why this build compiles no GLSL; empty if it does.

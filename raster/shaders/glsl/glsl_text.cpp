@@ -14,9 +14,6 @@ constexpr std::string_view kOldTextureNames[] = {"texture1D",   "texture2D", "te
                                                  "textureCube", "shadow1D",  "shadow2D"};
 
 constexpr int kMostIncludes = 1000, kMostIncludeDepth = 32;
-/// Operators of one expression: glslang walks a tree as deep as their number, on the caller's
-/// stack.
-constexpr int kMostOperators = 2000;
 /// Stands before a line number, until the version says what `#line` means.
 constexpr char kLineMark = '\1';
 
@@ -357,30 +354,6 @@ GlslVersion said_version(std::span<const GlslToken> tokens, const std::string& n
   return version;
 }
 
-/// Refuses expressions that glslang's recursion has no stack for.
-void check_depth(std::span<const GlslToken> tokens, const std::string& name) {
-  struct Level {
-    bool is_list = false;
-    int operators = 0;
-  };
-  std::vector<Level> levels(1);
-  std::string_view before;
-  for (const GlslToken& token : tokens) {
-    const char c = token.text[0];
-    if (c == '(' || c == '[') {
-      levels.push_back({c == '(' && !before.empty() && (is_word(before[0]) || before == "]"), 0});
-    } else if ((c == ')' || c == ']') && levels.size() > 1) {
-      levels.pop_back();
-    } else if (c == ';' || c == '{' || c == '}' || (c == ',' && levels.back().is_list)) {
-      levels.back().operators = 0;
-    } else if (!is_word(c) && c != '.' && ++levels.back().operators > kMostOperators) {
-      throw ShaderError(at(name, token.line) + "an expression of more than " +
-                        std::to_string(kMostOperators) + " operators; it would have to be split");
-    }
-    before = token.text;
-  }
-}
-
 bool is_vulkan(std::span<const GlslToken> tokens) {
   for (std::size_t i = 0; i + 2 < tokens.size(); ++i) {
     if (tokens[i].text != "layout") continue;
@@ -578,7 +551,6 @@ GlslText glsl_text(const GlslSource& source, const GlslReader& read, bool raise)
   if (version.is_es ? version.number < 300 : version.number < 420) text = spliced(text);
   text = with_known_layouts(text);
   const std::vector<GlslToken> tokens = glsl_tokens(text);
-  check_depth(tokens, source.name);
   out.is_vulkan = is_vulkan(tokens);
 
   out.before = "#extension GL_GOOGLE_include_directive : enable\n";  // and with it #line 1 "FILE"
@@ -607,6 +579,8 @@ GlslText glsl_text(const GlslSource& source, const GlslReader& read, bool raise)
     const auto lines = std::count(source.text.begin(), source.text.end(), '\n');
     out.after = line_directive(static_cast<int>(lines) + 1, source.name);
   }
+  check_limits(spliced(out.before + line_directive(1, source.name) + text + out.after),
+               source.name);
   const bool sets_next = version.is_es || version.number >= 330;
   out.text = with_lines(line_directive(1, source.name) + text, sets_next);
   out.after = with_lines(out.after, sets_next);

@@ -60,6 +60,10 @@ bool has_stage_condition(std::span<const GlslToken> tokens);
 /// whether there is one.
 GlslText glsl_text(const GlslSource& source, const GlslReader& read, bool raise = false);
 
+/// Throws ShaderError for what glslang would take too much stack, memory or time for: macros that
+/// grow without end, expressions and structures too deep. `text`: all that a compiler is given.
+void check_limits(std::string_view text, const std::string& name);
+
 /// What a convention declares for a shader that uses it and does not declare it itself.
 struct GlslSurroundings {
   std::string before{}, after{};

@@ -249,6 +249,8 @@ TEST_CASE("an include that cannot be is an error where the preprocessor comes to
   CHECK(error_with(source) == "none");
   source.text = "\n#include \"none\"\nvoid main() {}\n";
   CHECK(error_with(source) == "mine.frag:2: #include none: cannot read none");
+  source.text = "#error softfocus_missing_include\n#include \"none\"\n";
+  CHECK(error_with(source).starts_with("mine.frag:1: '#error': softfocus_missing_include"));
   source.text = "#include \"/etc/passwd\"\nvoid main() {}\n";
   CHECK(error_with(source) == "mine.frag:1: #include /etc/passwd: the path must be relative");
   source.text = "#include \"a\"\nvoid main() {}\n";
@@ -400,6 +402,98 @@ TEST_CASE("texts that would take a compiler's stack or memory are refused in a l
   CHECK(error_of_text("#version 330\n#extension GL_ARB_bindless_texture : require\n"
                       "void main() {}\n") ==
         "mine.frag:2: GL_ARB_bindless_texture is not supported; a sampler is a uniform");
+}
+
+TEST_CASE("macros that grow without end are refused before they are expanded") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const auto doubled = [](const std::string& first, const std::string& between) {
+    std::string text = "#version 330\nout vec4 o;\nuniform float x;\n#define A0 " + first + "\n";
+    for (int i = 1; i <= 40; ++i) {
+      const std::string before = "A" + std::to_string(i - 1);
+      for (const std::string& part : {std::string("#define A"), std::to_string(i), std::string(" "),
+                                      before, between, before, std::string("\n")}) {
+        text += part;
+      }
+    }
+    return text;
+  };
+  const std::string too_many = "macros make more than 524288 words and signs of the text";
+  const std::string too_deep =
+      "mine.frag:45: an expression of more than 2000 operators; it would have to be split";
+  CHECK(error_of_text(doubled("x", "+") + "void main() { o = vec4(A40); }\n") == too_deep);
+  CHECK(error_of_text(doubled("{o = vec4(x);}", " ") + "void main() { A40 }\n") ==
+        "mine.frag:45: " + too_many);
+  CHECK(error_of_text(doubled("1", " ") + "#if A40\n#endif\nvoid main() {}\n").ends_with(too_many));
+  std::string nested = "x";
+  for (int i = 0; i < 40; ++i) nested = "J(f, (" + nested + "))";
+  CHECK(error_of_text("#version 330\nout vec4 o;\nuniform float x;\n#define f(a) a + a\n"
+                      "#define J(a, b) a b\nvoid main() { o = vec4(" +
+                      nested + "); }\n") != "none");
+  // Each names all others.
+  std::string circle = "#version 330\n";
+  for (int i = 0; i < 12; ++i) {
+    circle += "#define A" + std::to_string(i);
+    for (int k = 0; k < 12; ++k) circle += " A" + std::to_string(k);
+    circle += "\n";
+  }
+  CHECK(error_of_text(circle + "void main() { A0 }\n").ends_with(too_many));
+  // Names that are made of words: CAT(A, 1) is A1.
+  CHECK(error_of_text("#version 330\nout vec4 o;\n#define CAT(a, b) a##b\n#define A0 ;;;;\n"
+                      "#define A1 CAT(A, 0) CAT(A, 0)\n#define A2 CAT(A, 1) CAT(A, 1)\n"
+                      "#define A3 CAT(A, 2) CAT(A, 2)\nvoid main() { A3 }\n")
+            .ends_with(too_many));
+}
+
+TEST_CASE("macros as shaders have them are no matter") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  std::string text =
+      "#version 330\nout vec4 o;\nuniform float x;\n"
+      "#define hash(p) fract(sin(dot(p, vec2(12.9898, 78.233))) * 43758.5453)\n"
+      "#define noise(p) mix(mix(hash(p), hash(p + vec2(1, 0)), 0.5), hash(p + vec2(0, 1)), 0.5)\n"
+      "#ifdef OTHER\n#define lerp mix\n#else\n#define mix_ lerp\n#define lerp mix\n#endif\n"
+      "#define NAME(n) value##n\n#define STEP s += noise(vec2(s, x)); s *= 0.5;\n"
+      "#define STEPS STEP STEP STEP STEP STEP STEP STEP STEP\n";
+  for (int i = 0; i < 3000; ++i) text += "#define N" + std::to_string(i) + " (-1 + 2)\n";
+  text +=
+      "void main() {\n  float s = x, value2 = lerp(x, 1.0, 0.5);\n  STEPS STEPS STEPS STEPS\n"
+      "  o = vec4(s + NAME(2) + noise(vec2(noise(vec2(x)))));\n}\n";
+  CHECK(error_of_text(text) == "none");
+}
+
+TEST_CASE("what glslang would take its stack or minutes for is refused with its line") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const std::string head = "#version 330\nout vec4 o;\nuniform float x;\nuniform vec4 v;\n";
+  const auto repeated = [](const std::string& part, int times) {
+    std::string text;
+    for (int i = 0; i < times; ++i) text += part;
+    return text;
+  };
+  const std::string too_deep =
+      "an expression of more than 2000 operators; it would have to be split";
+  CHECK(error_of_text(head + "void main() { o = v" + repeated(".xyzw", 20'000) + "; }\n") ==
+        "mine.frag:5: " + too_deep);
+  CHECK(error_of_text("#if " + repeated("(", 50'000) + "1" + repeated(")", 50'000) +
+                      "\n#endif\nvoid main() {}\n") == "mine.frag:1: " + too_deep);
+  CHECK(error_of_text(head + "void main() { o = vec4(" + repeated("(x", 20) +
+                      repeated(repeated("+x", 1500) + ")", 20) + "); }\n") ==
+        "mine.frag:5: " + too_deep);
+  std::string structures = head + "struct S0 { float a; };\n";
+  std::string functions = head + "float f0() { return x; }\n";
+  std::string cases = head + "void main() { switch (int(x)) {\n";
+  for (int i = 1; i <= 2500; ++i) {
+    const std::string own = std::to_string(i), other = std::to_string(i - 1);
+    if (i <= 40) structures += "struct S" + own + " { S" + other + " a, b; };\n";
+    functions += "float f" + own + "() { return f" + other + "(); }\n";
+    cases += "case " + own + ": o = v; break;\n";
+  }
+  CHECK(error_of_text(structures + "void main() { S40 s; o = v; }\n") ==
+        "mine.frag:22: structure S17 has more than 65536 members, with those of its members");
+  CHECK(error_of_text(functions + "void main() { o = vec4(f2500()); }\n")
+            .ends_with("more than 2000 functions"));
+  CHECK(error_of_text(cases + "} }\n").ends_with("more than 2000 cases"));
+  CHECK(error_of_text(head +
+                      "void main() { float a[100000000], b[100000000]; o = vec4(a == b); }\n") ==
+        "mine.frag: too many comparisons for arrays or structures of that size");
 }
 
 TEST_CASE("threads compile at once, each to the same words" * doctest::test_suite("threads")) {

@@ -4,10 +4,16 @@
 
 #include "raster/shaders/glsl/glsl.h"
 #include "tests/support/shader_checks.h"
+#include "tests/support/skip.h"
 
 using namespace softfocus;
 
 namespace {
+
+CompiledGlsl compiled_flow(const std::string& text) {
+  return compile_glsl({.name = "flow.frag", .text = text},
+                      [](const std::string&) { return std::optional<std::string>{}; });
+}
 
 /// The first difference of a main() with `int x`, the column, and `float s`, which is stored.
 std::string difference_of(const std::string& body, const std::string& functions = "") {
@@ -16,10 +22,7 @@ std::string difference_of(const std::string& body, const std::string& functions 
                            "\nvoid main() {\n  int x = int(gl_FragCoord.x), k = 0;\n"
                            "  float s = 0.0;\n" +
                            body + "\n  result = vec4(s, float(k), 0.0, 1.0);\n}\n";
-  const CompiledGlsl made =
-      compile_glsl({.name = "flow.frag", .text = text},
-                   [](const std::string&) { return std::optional<std::string>{}; });
-  return test::check_shader(made.words, 1).difference;
+  return test::check_shader(compiled_flow(text).words, 1).difference;
 }
 
 }  // namespace
@@ -130,4 +133,38 @@ TEST_CASE("what is returned early, out of loops, from within a case") {
                            }
                            return sum;
                          })") == "");
+}
+
+TEST_CASE("a choice by the opposite of a condition takes the other side") {
+  CHECK(difference_of(R"(
+    bool low = x < 20, odd = (x & 1) == 1;
+    s = mix(1.0, 2.0, !low) + mix(10.0, 20.0, !odd);
+    k = int(mix(vec2(3.0, 4.0), vec2(5.0, 6.0), bvec2(!odd, !low)).y);)") == "");
+}
+
+TEST_CASE("the size of a mip level is that of the turn's own level") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const UserShader shader = make_shader(compiled_flow(R"(#version 450
+uniform sampler2D t;
+layout(location = 0) out vec4 result;
+void main() {
+  ivec2 sum = ivec2(0), last = ivec2(0);
+  for (int level = 0; level < 4; ++level) {
+    sum += textureSize(t, level);
+    for (int i = 0; i < 2; ++i) last += textureSize(t, level) * (i + level);
+  }
+  result = vec4(sum, last);
+}
+)")
+                                            .words);
+  Texture texture = make_texture(make_image(Format::rgba16f, 8, 4));
+  generate_mipmaps(texture, {});
+  const ShaderTexture textures[] = {{.texture = &texture}};
+  Image found = make_image(Format::rgba32f, 40, 1);
+  const ImageView view = found;
+  ThreadPool pool{1};
+  run_shader(compile_shader(shader, shader.uniforms.words),
+             {.textures = textures, .targets = {&view, 1}}, pool);
+  // 8x4, 4x2, 2x1 and 1x1, each by 2 level + 1.
+  CHECK(load_texel(found, 39, 0) == glm::vec4{15.0f, 8.0f, 37.0f, 22.0f});
 }

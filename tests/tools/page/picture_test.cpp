@@ -108,7 +108,7 @@ TEST_CASE("a picture's frame has the bits of refocus, by every setting") {
     words.insert(words.end(), one.options.begin(), one.options.end());
     CAPTURE(words.back());
     const auto expected = refocused_by_program(files, words);
-    CHECK(frame.at("hash").text() == expected["picture_hash"]);
+    CHECK(frame.at("hash").text() == expected["picture_hash"].get<std::string>());
     CHECK(frame.at("focus_m").number() == doctest::Approx(expected["focus_m"].get<double>()));
     CHECK(frame.at("max_coc_px").number() == expected["max_coc_px"].get<double>());
   }

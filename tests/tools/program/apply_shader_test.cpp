@@ -125,6 +125,13 @@ void main() { colour = texelFetch(picture, ivec2(gl_FragCoord.xy), 0); }
   const auto row_of = [](const std::string& texels, int row) {
     return texels.substr(static_cast<std::size_t>(row) * 48 * 8, 48 * 8);
   };
+  const std::string place = all.applied(all.shader("place.frag", R"(#version 330
+in vec2 uv;
+out vec4 colour;
+void main() { colour = vec4(uv, 0.0, 0.0); }
+)"));
+  // Column 10 and row 7 of 48x32: u = 10.5 / 48 = 0x3300 and v = 7.5 / 32 = 0x3380.
+  CHECK(row_of(place, 7).substr(10 * 8, 4) == std::string{"\0\x33\x80\x33", 4});
   const std::string white = all.shader("white.frag", R"(#version 330
 out vec4 colour;
 void main() { colour = vec4(gl_FragCoord.y < 1.0 ? 1.0 : 0.0); }
@@ -139,6 +146,23 @@ void main() { colour = vec4(gl_FragCoord.y < 1.0 ? 1.0 : 0.0); }
   CHECK(row_of(below, 0).substr(0, 6) == std::string(6, '\0'));
   // The depth stays.
   CHECK(row_of(below, 3).substr(6, 2) == row_of(before, 3).substr(6, 2));
+}
+
+TEST_CASE("apply --shader: a Shadertoy that changes nothing gives a PNG's own codes") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const TemporaryDirectory directory;
+  const std::string picture = directory.file("picture.png"), same = directory.file("same.png");
+  const std::string toy = directory.file("toy.frag");
+  write_file(toy,
+             "void mainImage(out vec4 c, in vec2 at) {\n"
+             "  c = texture(iChannel0, at / iResolution.xy);\n}\n");
+  REQUIRE(run_program(render("figures", picture)).status == 0);
+  REQUIRE(run_program({"apply", picture, "--shader", toy, "-o", same}).status == 0);
+  const auto codes = [](const std::string& file) {
+    const std::string bytes = read_file(file);
+    return decode_png(std::as_bytes(std::span{bytes})).image.bytes;
+  };
+  CHECK(codes(same) == codes(picture));
 }
 
 TEST_CASE("apply --shader: what is wrong is one line, with the shader's or the option's") {

@@ -1,0 +1,508 @@
+// What glslang has no stack, memory or time for, refused before it is asked. Macros are weighed
+// where they are used, not expanded: a bound of what they become is found however fast they grow.
+
+#include <algorithm>
+#include <cctype>
+#include <limits>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "raster/shaders/glsl/glsl_text.h"
+
+namespace softfocus {
+namespace {
+
+/// Of an expression, one inside the other: glslang walks them on the caller's stack.
+constexpr double kMostOperators = 2000;
+constexpr double kMostTokens = 1 << 19;  ///< some seconds of glslang's time
+constexpr double kMostCases = 2000;
+constexpr int kMostFunctions = 2000;           ///< each is compared with each, as cases are
+constexpr double kMostMembers = kMostScalars;  ///< of a structure, with those inside
+constexpr double kMostCompared = 1 << 22;      ///< numbers; an array's are compared one by one
+constexpr int kMostRounds = 200;
+
+constexpr double kEndless = std::numeric_limits<double>::infinity();
+
+bool begins_word(const GlslToken& token) {
+  return std::isalpha(static_cast<unsigned char>(token.text[0])) != 0 || token.text[0] == '_';
+}
+bool is_word_or_number(const GlslToken& token) {
+  return begins_word(token) || std::isdigit(static_cast<unsigned char>(token.text[0])) != 0;
+}
+
+/// The number that a word begins with, or 1.
+double number_of(std::string_view word) {
+  double number = 0;
+  for (const char c : word) {
+    if (std::isdigit(static_cast<unsigned char>(c)) == 0) break;
+    number = 10 * number + (c - '0');
+  }
+  return std::max(number, 1.0);
+}
+
+/// What a run of tokens becomes. Operators are counted at its own level and, `inside`, those of the
+/// deepest bracket in it; if it ends statements, those of its first or last part, and `worst` of
+/// all.
+struct Weight {
+  double tokens = 0, cases = 0, compared = 0;
+  double operators = 0, inside = 0, worst = 0;
+  bool ends_statements = false;
+};
+
+struct Definition {
+  std::string_view name{};
+  std::vector<std::string_view> parameters{};
+  std::span<const GlslToken> body{};
+};
+
+/// A macro's name, by the worst of all that it is defined as anywhere in the text.
+struct MacroName {
+  std::vector<std::size_t> definitions{};
+  Weight weight{};
+  /// How often an argument's tokens are there afterwards, and how often at the macro's own level.
+  double times = 1, times_outside = 0;
+  bool takes_arguments = false;
+};
+
+/// How often a parameter stands in a definition.
+struct Uses {
+  double all = 0, outside = 0;
+};
+using ParameterUses = std::unordered_map<std::string_view, Uses>;
+
+/// Gives tokens the lines that `#line` says, and finds the file of each place.
+class Places {
+ public:
+  Places(std::span<GlslToken> tokens, const std::string& name) : name_(name) {
+    int shift = 0;
+    for (std::size_t i = 0; i < tokens.size(); ++i) {
+      if (tokens[i].is_first && tokens[i].text == "#" && i + 2 < tokens.size() &&
+          tokens[i + 1].text == "line") {
+        const int said = static_cast<int>(std::min(number_of(tokens[i + 2].text), kMostTokens));
+        shift = said - tokens[i].line - 1;
+        if (i + 3 < tokens.size() && tokens[i + 3].text.size() > 1 &&
+            tokens[i + 3].text[0] == '"') {
+          files_.push_back(tokens[i + 3].text);
+        }
+      }
+      tokens[i].line += shift;
+    }
+  }
+
+  [[noreturn]] void refuse(const GlslToken& token, const std::string& why) const {
+    std::string file = name_;
+    for (const std::string_view of : files_) {
+      if (of.data() < token.text.data()) file = of.substr(1, of.size() - 2);
+    }
+    throw ShaderError(file + ":" + std::to_string(token.line) + ": " + why);
+  }
+
+ private:
+  const std::string& name_;
+  std::vector<std::string_view> files_{};  ///< with quotes, as they stand in the text
+};
+
+class Macros {
+ public:
+  explicit Macros(std::span<const GlslToken> tokens) {
+    split(tokens);
+    find_loose(tokens);
+    int rounds = 0;
+    for (bool grew = true; grew; ++rounds) {
+      grew = false;
+      for (const Definition& of : definitions_) grew = add(of) || grew;
+      if (rounds == kMostRounds && grew) {
+        is_endless_ = true;
+        return;
+      }
+    }
+  }
+
+  std::vector<std::span<const GlslToken>> code{};  ///< what is no directive, and conditions
+
+  /// Of code, in which no parameters are. `found` is told each statement's operators.
+  template <class Found>
+  Weight weight_of(std::span<const GlslToken> tokens, const Found& found) const {
+    if (is_endless_) return {.tokens = kEndless};
+    return weigh(tokens, {}, nullptr, found);
+  }
+
+  /// The words that a name may stand for, and itself.
+  template <class See>
+  void for_each_meaning(std::string_view word, const See& see) const {
+    see(word);
+    const auto name = names_.find(word);
+    if (name == names_.end()) return;
+    for (const std::size_t of : name->second.definitions) {
+      for (const GlslToken& token : definitions_[of].body) see(token.text);
+    }
+  }
+
+ private:
+  std::vector<Definition> definitions_{};
+  std::unordered_map<std::string_view, MacroName> names_{};
+  /// A name that takes arguments stands somewhere without: anything in brackets may become its
+  /// arguments.
+  bool is_loose_ = false;
+  bool is_endless_ = false;
+  std::unordered_set<std::string_view> pasted_names_{};  ///< that `##` may make
+  Weight pasted_{};                                      ///< the worst of them
+  double most_times_ = 1;                                ///< of all macros
+
+  void split(std::span<const GlslToken> tokens) {
+    std::size_t begin = 0;
+    for (std::size_t i = 0; i < tokens.size();) {
+      if (!tokens[i].is_first || tokens[i].text != "#") {
+        ++i;
+        continue;
+      }
+      if (i > begin) code.push_back(tokens.subspan(begin, i - begin));
+      std::size_t end = i + 1;
+      while (end < tokens.size() && !tokens[end].is_first) ++end;
+      const std::string_view word = end > i + 1 ? tokens[i + 1].text : std::string_view{};
+      if (word == "if" || word == "elif") code.push_back(tokens.subspan(i + 2, end - i - 2));
+      if (word == "define" && end > i + 2) define(tokens.subspan(i + 2, end - i - 2));
+      begin = i = end;
+    }
+    if (begin < tokens.size()) code.push_back(tokens.subspan(begin));
+  }
+
+  void define(std::span<const GlslToken> tokens) {
+    Definition made{.name = tokens[0].text};
+    MacroName& name = names_[made.name];
+    std::size_t i = 1;
+    if (i < tokens.size() && tokens[i].text == "(" &&
+        tokens[i].text.data() == made.name.data() + made.name.size()) {
+      name.takes_arguments = true;
+      for (++i; i < tokens.size() && tokens[i].text != ")"; ++i) {
+        if (begins_word(tokens[i])) made.parameters.push_back(tokens[i].text);
+      }
+      ++i;
+    }
+    made.body = tokens.subspan(std::min(i, tokens.size()));
+    name.definitions.push_back(definitions_.size());
+    definitions_.push_back(made);
+  }
+
+  void find_loose(std::span<const GlslToken> all) {
+    const auto look = [&](std::span<const GlslToken> tokens, std::string_view own) {
+      for (std::size_t i = 0; i < tokens.size(); ++i) {
+        const auto found = names_.find(tokens[i].text);
+        if (found == names_.end() || !found->second.takes_arguments || found->first == own)
+          continue;
+        const std::string_view before = i == 0 ? std::string_view{} : tokens[i - 1].text;
+        if (before == "defined" || (before == "(" && i > 1 && tokens[i - 2].text == "defined")) {
+          continue;
+        }
+        if (i + 1 == tokens.size() || tokens[i + 1].text != "(") is_loose_ = true;
+      }
+    };
+    for (const auto& tokens : code) look(tokens, {});
+    bool pastes = false;
+    for (const Definition& of : definitions_) {
+      look(of.body, of.name);
+      int open = 0;
+      for (std::size_t i = 0; i < of.body.size(); ++i) {
+        open += of.body[i].text == "(" ? 1 : of.body[i].text == ")" ? -1 : 0;
+        pastes = pastes || (i > 0 && of.body[i].text == "#" && of.body[i - 1].text == "#");
+      }
+      // Brackets of which one half is in a macro: what stands between is no group here.
+      if (open != 0 && uses_arguments(of)) is_endless_ = true;
+    }
+    if (pastes) find_pasted(all);
+  }
+  bool uses_arguments(const Definition& of) const {
+    return std::any_of(of.body.begin(), of.body.end(), [&](const GlslToken& token) {
+      const auto found = names_.find(token.text);
+      return found != names_.end() && found->second.takes_arguments;
+    });
+  }
+
+  /// Names that are made of two or more words of the text.
+  void find_pasted(std::span<const GlslToken> all) {
+    constexpr std::size_t kLongest = 32;
+    std::unordered_set<std::string_view> words;
+    for (const GlslToken& token : all) {
+      if (is_word_or_number(token)) words.insert(token.text);
+    }
+    for (const auto& [name, of] : names_) {
+      bool reached[kLongest + 1] = {true};
+      bool is_made = name.size() > kLongest;
+      for (std::size_t from = 0; from < name.size() && !is_made; ++from) {
+        if (!reached[from]) continue;
+        for (std::size_t to = from + 1; to <= name.size(); ++to) {
+          if (from == 0 && to == name.size()) continue;
+          const std::string_view part = name.substr(from, to - from);
+          const bool is_digit =
+              part.size() == 1 && std::isdigit(static_cast<unsigned char>(part[0])) != 0;
+          if (is_digit || words.contains(part)) reached[to] = true;
+        }
+      }
+      if (!is_made && !reached[name.size()]) continue;
+      pasted_names_.insert(name);
+      if (of.takes_arguments) is_loose_ = true;
+    }
+  }
+
+  /// Whether what is known of a name grew.
+  bool add(const Definition& of) {
+    ParameterUses uses;
+    for (const std::string_view parameter : of.parameters) uses[parameter] = {};
+    Weight made = weigh(of.body, of.name, &uses, [](double, const GlslToken&) {});
+    MacroName& name = names_[of.name];
+    made.ends_statements = made.ends_statements && name.definitions.size() == 1;
+    if (!made.ends_statements) made.operators = std::max(made.operators, made.worst);
+    bool grew = false;
+    const auto raise = [&](double& to, double from) {
+      grew = grew || from > to;
+      to = std::max(to, from);
+    };
+    const auto raise_all = [&](Weight& to) {
+      raise(to.tokens, made.tokens);
+      raise(to.cases, made.cases);
+      raise(to.compared, made.compared);
+      raise(to.operators, made.operators);
+      raise(to.inside, made.inside);
+      raise(to.worst, made.worst);
+    };
+    raise_all(name.weight);
+    name.weight.ends_statements = made.ends_statements;
+    if (pasted_names_.contains(of.name)) {
+      made.operators = std::max(made.operators, made.worst);
+      raise_all(pasted_);
+    }
+    for (const auto& [parameter, use] : uses) {
+      raise(name.times, use.all);
+      raise(name.times_outside, use.outside);
+    }
+    raise(most_times_, name.times);
+    return grew;
+  }
+
+  struct Level {
+    bool is_list = false;
+    double operators = 0, inside = 0;
+    double head = -1;  ///< of its first part, once that has ended
+    double worst = 0;  ///< of its parts before this one
+    double times = 1;  ///< that a token in it is there
+    /// Of a macro's arguments: how often they are there behind it, and how deep.
+    double factor = 1, outside = 0, depth = 1;
+
+    double all() const { return std::max(worst, operators + inside); }
+    void end_part() {
+      if (head < 0) head = operators + inside;
+      worst = all();
+      operators = inside = 0;
+    }
+    void take(const Weight& of) {
+      if (of.ends_statements) {
+        operators += of.operators;
+        end_part();
+        worst = std::max(worst, of.worst);
+      }
+      operators += of.operators;
+      inside = std::max(inside, of.inside);
+    }
+  };
+
+  /// `own`: the macro of which this is the body; its name is not replaced in it.
+  template <class Found>
+  Weight weigh(std::span<const GlslToken> tokens, std::string_view own, ParameterUses* uses,
+               const Found& found) const {
+    Weight sum;
+    std::vector<Level> levels(1);
+    const auto macro_at = [&](std::size_t i) -> const MacroName* {
+      const auto at = tokens[i].text == own ? names_.end() : names_.find(tokens[i].text);
+      return at == names_.end() ? nullptr : &at->second;
+    };
+    const auto is_parameter = [&](std::size_t i) {
+      return uses != nullptr && uses->contains(tokens[i].text);
+    };
+    const auto is_pasted = [&](std::size_t i) {
+      return !pasted_names_.empty() && ((i > 0 && tokens[i - 1].text == "#") ||
+                                        (i + 1 < tokens.size() && tokens[i + 1].text == "#"));
+    };
+    const auto take = [&](const Weight& of) {
+      Level& level = levels.back();
+      sum.tokens += level.times * of.tokens;
+      sum.cases += level.times * of.cases;
+      sum.compared += level.times * of.compared;
+      sum.ends_statements = sum.ends_statements || of.ends_statements;
+      level.take(of);
+    };
+    const auto open = [&](std::size_t i) {
+      Level level{.is_list = tokens[i].text == "(" && i > 0 &&
+                             (is_word_or_number(tokens[i - 1]) || tokens[i - 1].text == "]")};
+      const MacroName* const macro = i > 0 ? macro_at(i - 1) : nullptr;
+      if (macro != nullptr && macro->takes_arguments) {
+        level.factor = macro->times;
+        level.outside = macro->times_outside;
+        level.depth = 1 + macro->weight.inside;
+      }
+      // What begins an argument or a body, or stands behind a name that may become another.
+      if (is_loose_ &&
+          (i == 0 || macro != nullptr || is_parameter(i - 1) || is_pasted(i - 1) ||
+           tokens[i - 1].text == "(" || tokens[i - 1].text == "," || tokens[i - 1].text == ")")) {
+        level.factor = level.outside = most_times_;
+      }
+      level.times = levels.back().times * level.factor;
+      levels.push_back(level);
+    };
+    const auto close = [&](const GlslToken& token) {
+      const Level inner = levels.back();
+      levels.pop_back();
+      Level& outer = levels.back();
+      outer.operators += inner.outside * inner.all();
+      outer.inside = std::max(outer.inside, inner.depth + inner.factor * inner.all());
+      found(outer.all(), token);
+    };
+    for (std::size_t i = 0; i < tokens.size(); ++i) {
+      const GlslToken& token = tokens[i];
+      const char c = token.text[0];
+      Level& level = levels.back();
+      if (is_pasted(i)) take(pasted_);
+      sum.tokens += level.times;
+      if (is_parameter(i)) {
+        Uses& of = uses->at(token.text);
+        of.all += level.times;
+        if (levels.size() == 1) of.outside += level.times;
+      } else if (const MacroName* const macro = macro_at(i)) {
+        take(macro->weight);
+        found(level.all(), token);
+      } else if (token.text == "case") {
+        sum.cases += level.times;
+      } else if (c == '(' || c == '[') {
+        open(i);
+      } else if (c == ')' || c == ']') {
+        if (levels.size() > 1) close(token);
+      } else if (c == ';' || c == '{' || c == '}' || (c == ',' && level.is_list)) {
+        level.end_part();
+        sum.ends_statements = sum.ends_statements || levels.size() == 1;
+      } else if (!is_word_or_number(token) && (c != '.' || is_member(tokens, i))) {
+        if (compares_values(tokens, i)) sum.compared += level.times;
+        ++level.operators;
+        found(level.all(), token);
+      }
+    }
+    while (levels.size() > 1) close(tokens.back());
+    const Level& last = levels.back();
+    if (last.head < 0) {
+      sum.operators = last.operators;
+      sum.inside = last.inside;
+    } else {
+      sum.operators = std::max(last.head, last.operators + last.inside);
+      sum.worst = last.all();
+    }
+    return sum;
+  }
+  /// The second sign of == or !=, between what may be arrays or structures.
+  static bool compares_values(std::span<const GlslToken> tokens, std::size_t i) {
+    return i > 0 && i + 1 < tokens.size() && tokens[i].text == "=" &&
+           (tokens[i - 1].text == "=" || tokens[i - 1].text == "!") &&
+           (begins_word(tokens[i + 1]) || tokens[i + 1].text == "(");
+  }
+  /// A dot of `a.xy`, not of `1.5`.
+  static bool is_member(std::span<const GlslToken> tokens, std::size_t i) {
+    return i > 0 && i + 1 < tokens.size() && begins_word(tokens[i + 1]) &&
+           std::isdigit(static_cast<unsigned char>(tokens[i - 1].text[0])) == 0;
+  }
+};
+
+/// The members of the largest structure or elements of the largest array, as far as their lengths
+/// are written as numbers.
+double largest_value(const Macros& macros, std::span<const GlslToken> tokens,
+                     const Places& places) {
+  std::unordered_map<std::string_view, double> structures;
+  double largest = 1;
+  const auto members_of = [&](std::string_view word) {
+    double most = 1;
+    macros.for_each_meaning(word, [&](std::string_view meaning) {
+      if (const auto at = structures.find(meaning); at != structures.end()) {
+        most = std::max(most, at->second);
+      }
+    });
+    return most;
+  };
+  /// Of `[2][3]` from `i` on, behind which it is left.
+  const auto elements = [&](std::size_t& i) {
+    double product = 1;
+    while (i < tokens.size() && tokens[i].text == "[") {
+      for (++i; i < tokens.size() && tokens[i].text != "]"; ++i) {
+        double most = 1;
+        macros.for_each_meaning(tokens[i].text, [&](std::string_view meaning) {
+          most = std::max(most, number_of(meaning));
+        });
+        product *= most;
+      }
+      ++i;
+    }
+    return product;
+  };
+  for (std::size_t i = 0; i < tokens.size();) {
+    if (tokens[i].text == "[") {
+      largest = std::max(largest, elements(i));
+      continue;
+    }
+    if (tokens[i].text != "struct" || i + 2 >= tokens.size() || tokens[i + 2].text != "{") {
+      ++i;
+      continue;
+    }
+    const GlslToken& of = tokens[i + 1];
+    double members = 0, of_type = 1, length = 1;
+    for (i += 3; i < tokens.size() && tokens[i].text != "}";) {
+      if (tokens[i].text == "[") {
+        length *= elements(i);
+        continue;
+      }
+      of_type = std::max(of_type, members_of(tokens[i].text));
+      if (tokens[i].text == "," || tokens[i].text == ";") {
+        members += of_type * length;
+        length = 1;
+        if (tokens[i].text == ";") of_type = 1;
+      }
+      ++i;
+    }
+    double& most = structures[of.text];
+    most = std::max(most, members);
+    largest = std::max(largest, members);
+    if (members > kMostMembers) {
+      places.refuse(of, "structure " + std::string(of.text) +
+                            " has more than 65536 members, with those of its members");
+    }
+  }
+  return largest;
+}
+
+}  // namespace
+
+void check_limits(std::string_view text, const std::string& name) {
+  std::vector<GlslToken> tokens = glsl_tokens(text);
+  const Places places(tokens, name);
+  const Macros macros(tokens);
+  Weight sum;
+  int functions = 0, depth = 0;
+  for (const auto& part : macros.code) {
+    if (part.empty()) continue;
+    const Weight of = macros.weight_of(part, [&](double operators, const GlslToken& token) {
+      if (operators <= kMostOperators) return;
+      places.refuse(token, "an expression of more than 2000 operators; it would have to be split");
+    });
+    sum.tokens += of.tokens;
+    sum.cases += of.cases;
+    sum.compared += of.compared;
+    if (sum.tokens > kMostTokens) {
+      places.refuse(part.front(), "macros make more than 524288 words and signs of the text");
+    }
+    if (sum.cases > kMostCases) places.refuse(part.front(), "more than 2000 cases");
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      if (part[i].text == "{" && depth++ == 0 && i > 0 && part[i - 1].text == ")") ++functions;
+      if (part[i].text == "}") depth = std::max(0, depth - 1);
+      if (functions > kMostFunctions) places.refuse(part[i], "more than 2000 functions");
+    }
+  }
+  if (sum.compared * largest_value(macros, tokens, places) > kMostCompared) {
+    throw ShaderError(name + ": too many comparisons for arrays or structures of that size");
+  }
+}
+
+}  // namespace softfocus

@@ -1,0 +1,29 @@
+// Any text as GLSL: a ShaderError, or pixels. The first byte chooses the convention and the stage.
+
+#include <string>
+
+#include "raster/shaders/glsl/glsl.h"
+#include "tests/fuzz/fuzz_input.h"
+#include "tests/support/shader_checks.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace softfocus;
+  if (size == 0) return 0;
+  const GlslSource source{
+      .stage = data[0] / 6 % 8 == 7 ? ShaderStage::vertex : ShaderStage::fragment,
+      .name = "fuzz.glsl",
+      .text{reinterpret_cast<const char*>(data) + 1, size - 1},
+      .convention = static_cast<GlslConvention>(data[0] % 6)};
+  const auto read = [](const std::string& path) {
+    return path == "a" ? std::optional<std::string>{"float included;\n"} : std::nullopt;
+  };
+  try {
+    CompiledGlsl compiled = compile_glsl(source, read);
+    if (source.stage == ShaderStage::fragment) {
+      test::run_any_shader(std::move(compiled.words), Isa::baseline);
+    }
+    return counted(true, data, size);
+  } catch (const ShaderError&) {
+    return counted(false, data, size);
+  }
+}
