@@ -7,6 +7,7 @@
 
 #include "dof/pipelines/picture_codes.h"
 #include "raster/images/texel.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 
@@ -19,6 +20,7 @@ struct PipelinePrograms {
   static constexpr std::size_t kMost = 256;
   std::mutex mutex{};
   std::vector<Compiled> all{};
+  std::vector<Image> spare{};  ///< memory of the last run's pictures
 };
 
 namespace {
@@ -148,21 +150,60 @@ void bind_rest(Pipeline& pipeline, PipelinePass& pass, const ShaderProgram& prog
   }
 }
 
-Image copy_of(const ConstImageView& picture) {
-  Image copy = make_image(picture.format, picture.width, picture.height);
-  for (int y = 0; y < picture.height; ++y) {
-    const auto from = row<std::uint16_t>(picture, y);
-    std::copy(from.begin(), from.end(), row<std::uint16_t>(copy, y).begin());
+/// Of zeros, or, unless they are wanted, of what it held before.
+Image take_image(const Pipeline& pipeline, Format format, int width, int height, bool of_zeros) {
+  Image found;
+  {
+    const std::lock_guard lock(pipeline.programs->mutex);
+    std::vector<Image>& spare = pipeline.programs->spare;
+    const auto at = std::find_if(spare.begin(), spare.end(), [&](const Image& of) {
+      return of.format == format && of.width == width && of.height == height;
+    });
+    if (at == spare.end()) return make_image(format, width, height);
+    found = std::move(*at);
+    spare.erase(at);
   }
-  return copy;
+  if (of_zeros) std::fill(found.bytes.begin(), found.bytes.end(), std::byte{0});
+  return found;
+}
+
+void copy_rows(const ConstImageView& from, const ImageView& to, ThreadPool& pool) {
+  constexpr int kRows = 32;
+  for_each_band(pool, from.height, kRows, [&](int first, int end) {
+    for (int y = first; y < end; ++y) {
+      const auto texels = row<std::uint16_t>(from, y);
+      std::copy(texels.begin(), texels.end(), row<std::uint16_t>(to, y).begin());
+    }
+  });
 }
 
 /// What passes read and have made.
 class Drawn {
  public:
-  Drawn(const Pipeline& pipeline, const DofInput& input) : pipeline_(pipeline), input_(input) {
+  Drawn(const Pipeline& pipeline, const DofInput& input, ThreadPool& pool)
+      : pipeline_(pipeline), input_(input) {
     passes.resize(pipeline.passes.size());
-    picture_ = make_texture(source_image(pipeline, input, PipelineSource::picture));
+    if (pipeline.by_codes) {
+      picture_ = make_texture(codes_of(input.scene));
+    } else {
+      const ConstImageView& from = input.scene;
+      picture_ =
+          make_texture(take_image(pipeline, Format::rgba16f, from.width, from.height, false));
+      copy_rows(from, picture_.levels[0], pool);
+    }
+  }
+
+  /// Keeps the memory of all for the next run.
+  void give_back() {
+    std::vector<Image> spare;
+    const auto add = [&](std::vector<Texture>& textures) {
+      for (Texture& texture : textures) spare.push_back(std::move(texture.levels[0]));
+      textures.clear();
+    };
+    for (std::vector<Texture>& made : passes) add(made);
+    if (!pipeline_.by_codes) spare.push_back(std::move(picture_.levels[0]));
+    const std::lock_guard lock(pipeline_.programs->mutex);
+    pipeline_.programs->spare = std::move(spare);
   }
 
   std::vector<std::vector<Texture>> passes{};  ///< by their targets
@@ -194,7 +235,7 @@ class Drawn {
 
 std::vector<Texture> draw_pass(const Pipeline& pipeline, std::size_t number, const PassRun& run,
                                std::size_t turn, Drawn& drawn, const Profile& profile,
-                               ThreadPool& pool) {
+                               const ImageView* result, ThreadPool& pool) {
   const PipelinePass& pass = pipeline.passes[number];
   const auto program = program_of(pipeline, number, run.words[turn]);
   std::vector<ShaderTexture> textures(pass.shader.uniforms.texture_count);
@@ -212,29 +253,53 @@ std::vector<Texture> draw_pass(const Pipeline& pipeline, std::size_t number, con
   std::vector<ImageView> targets;
   made.reserve(pass.targets.size());
   targets.reserve(pass.targets.size());
+  // What a shader discards stays 0.
+  const bool of_zeros = program->killed.is_there;
   for (const Format format : pass.targets) {
-    made.push_back(make_texture(make_image(format, run.width, run.height)));
+    if (result != nullptr) {
+      targets.push_back(*result);
+      continue;
+    }
+    made.push_back(make_texture(take_image(pipeline, format, run.width, run.height, of_zeros)));
     targets.push_back(made.back().levels[0]);
   }
   run_shader(*program, {.textures = textures, .targets = targets, .profile = profile}, pool);
   return made;
 }
 
-/// Of any format, with the picture's depths.
-void store_result(const Image& drawn, const DofInput& input, const ImageView& result) {
-  for (int y = 0; y < result.height; ++y) {
-    const auto from = row<std::uint16_t>(input.scene, y);
-    const auto to = row<std::uint16_t>(result, y);
-    if (drawn.format == Format::rgba16f) {
-      const auto colours = row<std::uint16_t>(drawn, y);
-      std::copy(colours.begin(), colours.end(), to.begin());
-    } else {
-      for (int x = 0; x < result.width; ++x) {
-        store_texel<Format::rgba16f>(result, x, y, load_texel(drawn, x, y), input.profile);
-      }
+/// Of any format.
+void store_result(const Image& drawn, const Profile& profile, const ImageView& result,
+                  ThreadPool& pool) {
+  if (drawn.format == Format::rgba16f) return copy_rows(drawn, result, pool);
+  for_each_row(pool, result.height, 8, [&](int y) {
+    for (int x = 0; x < result.width; ++x) {
+      store_texel<Format::rgba16f>(result, x, y, load_texel(drawn, x, y), profile);
     }
+  });
+}
+
+void keep_depths(const ConstImageView& picture, const ImageView& result, ThreadPool& pool) {
+  for_each_row(pool, result.height, 32, [&](int y) {
+    const auto from = row<std::uint16_t>(picture, y);
+    const auto to = row<std::uint16_t>(result, y);
     for (std::size_t i = 3; i < to.size(); i += 4) to[i] = from[i];
-  }
+  });
+}
+
+/// Whether the last pass can draw where the result goes. What a shader discards there would not
+/// be 0.
+bool draws_result(const Pipeline& pipeline, const PassRun& last, const ImageView& result) {
+  return !pipeline.by_codes && last.words.size() == 1 && result.stride_bytes % 64 == 0 &&
+         pipeline.passes.back().targets == std::vector{Format::rgba16f} &&
+         !program_of(pipeline, pipeline.passes.size() - 1, last.words[0])->killed.is_there;
+}
+
+void check_result_size(const Pipeline& pipeline, const PassRun& last, const ImageView& result) {
+  if (last.width == result.width && last.height == result.height) return;
+  fail(pipeline.passes.back(), "the last pass draws " + std::to_string(last.width) + " x " +
+                                   std::to_string(last.height) + " pixels; the picture's size, " +
+                                   std::to_string(result.width) + " x " +
+                                   std::to_string(result.height) + ", would be right");
 }
 
 // --- uniforms that are known by their names ---
@@ -410,7 +475,13 @@ std::vector<PassRun> pass_runs(const Pipeline& pipeline, const DofInput& input) 
 Image source_image(const Pipeline& pipeline, const DofInput& input, PipelineSource source) {
   const ConstImageView& picture = input.scene;
   if (source == PipelineSource::picture) {
-    return pipeline.by_codes ? codes_of(picture) : copy_of(picture);
+    if (pipeline.by_codes) return codes_of(picture);
+    Image copy = make_image(picture.format, picture.width, picture.height);
+    for (int y = 0; y < picture.height; ++y) {
+      const auto texels = row<std::uint16_t>(picture, y);
+      std::copy(texels.begin(), texels.end(), row<std::uint16_t>(copy, y).begin());
+    }
+    return copy;
   }
   Image depth = make_image(Format::r32f, picture.width, picture.height);
   const double near = input.settings.frame.near_m, far = input.settings.frame.far_m;
@@ -429,27 +500,30 @@ Image source_image(const Pipeline& pipeline, const DofInput& input, PipelineSour
 void run_pipeline(const Pipeline& pipeline, const DofInput& input, const ImageView& result,
                   ThreadPool& pool, const OnPass& on_pass) {
   const std::vector<PassRun> runs = pass_runs(pipeline, input);
-  Drawn drawn{pipeline, input};
+  check_result_size(pipeline, runs.back(), result);
+  Drawn drawn{pipeline, input, pool};
+  const std::size_t last = runs.size() - 1;
+  const bool is_drawn_in_place = !on_pass && draws_result(pipeline, runs[last], result);
   for (std::size_t i = 0; i < runs.size(); ++i) {
+    const ImageView* const place = i == last && is_drawn_in_place ? &result : nullptr;
     for (std::size_t turn = 0; turn < runs[i].words.size(); ++turn) {
-      std::vector<Texture> made = draw_pass(pipeline, i, runs[i], turn, drawn, input.profile, pool);
+      std::vector<Texture> made =
+          draw_pass(pipeline, i, runs[i], turn, drawn, input.profile, place, pool);
+      if (place != nullptr) break;
       drawn.passes[i] = std::move(made);
       drawn.previous = &drawn.passes[i][0];
       if (on_pass) on_pass(i, drawn.passes[i]);
     }
   }
-  const Image& last = drawn.previous->levels[0];
-  if (last.width != result.width || last.height != result.height) {
-    fail(pipeline.passes.back(), "the last pass draws " + std::to_string(last.width) + " x " +
-                                     std::to_string(last.height) + " pixels; the picture's size, " +
-                                     std::to_string(result.width) + " x " +
-                                     std::to_string(result.height) + ", would be right");
-  }
   if (pipeline.by_codes) {
-    store_codes(last, input.scene, result);
+    store_codes(drawn.previous->levels[0], input.scene, result);
   } else {
-    store_result(last, input, result);
+    if (!is_drawn_in_place) {
+      store_result(drawn.previous->levels[0], input.profile, result, pool);
+    }
+    keep_depths(input.scene, result, pool);
   }
+  drawn.give_back();
 }
 
 }  // namespace softfocus

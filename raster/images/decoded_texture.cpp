@@ -92,7 +92,15 @@ void decode_8_bit(const Image& image, const Codes& codes, float* to) {
   }
 }
 
-void decode_floats(const Image& image, float* to) {
+void decode_floats(const Image& image, Isa isa, float* to) {
+  if (image.format == Format::rgba16f && isa != Isa::scalar) {
+    const std::size_t count = 4 * static_cast<std::size_t>(image.width);
+    for (int y = 0; y < image.height; ++y) {
+      decode_halves(isa, row<std::uint16_t>(image, y).data(), count, to);
+      to += count;
+    }
+    return;
+  }
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
       const glm::vec4 texel = load_texel(image, x, y);
@@ -115,7 +123,7 @@ std::size_t texel_floats(const Image& image) {
 
 }  // namespace
 
-DecodedTexture decode_texture(const Texture& texture, const Profile& profile) {
+DecodedTexture decode_texture(const Texture& texture, const Profile& profile, Isa isa) {
   assert(!texture.levels.empty());
   DecodedTexture decoded;
   decoded.source = &texture;
@@ -142,7 +150,7 @@ DecodedTexture decode_texture(const Texture& texture, const Profile& profile) {
     if (is_8_bit(format)) {
       decode_8_bit(texture.levels[i], codes, to);
     } else {
-      decode_floats(texture.levels[i], to);
+      decode_floats(texture.levels[i], isa, to);
     }
   }
   return decoded;

@@ -23,6 +23,15 @@ struct DecodedAxis {
   bool base_is_power_of_two = false;                            ///< level 0's
 };
 
+/// Of numbers that are not initialised.
+struct DecodedAllocator : RowAllocator<float> {
+  template <class U>
+  struct rebind {
+    using other = DecodedAllocator;
+  };
+  void construct(float* place) { ::new (static_cast<void*>(place)) float; }
+};
+
 struct DecodedTexture {
   const Texture* source = nullptr;  ///< must outlive this
   int level_count = 0;
@@ -34,11 +43,15 @@ struct DecodedTexture {
   alignas(64) std::array<std::int32_t, kMaxDecodedLevels> starts{};
   /// Red, green, blue and alpha of each texel, from fetch_texel() or as `are_whole` says. Empty
   /// if only sample() will do: for softpipe, more than kMaxDecodedLevels levels, or 2^31 floats.
-  std::vector<float, RowAllocator<float>> texels;
+  std::vector<float, DecodedAllocator> texels;
 };
 
+/// Halves as floats; not for the scalar unit.
+void decode_halves(Isa isa, const std::uint16_t* from, std::size_t count, float* to);
+
 /// Decodes for the texture unit of `profile`. Needs at least one level.
-DecodedTexture decode_texture(const Texture& texture, const Profile& profile);
+DecodedTexture decode_texture(const Texture& texture, const Profile& profile,
+                              Isa isa = Isa::scalar);
 
 /// The arithmetic of sample_lanes().
 enum class LaneArithmetic : std::uint8_t {

@@ -10,6 +10,7 @@
 #include <array>
 
 #include "raster/images/decoded_texture.h"
+#include "raster/numbers/half.h"
 
 #define SOFTFOCUS_KERNELS "raster/images/sample_lanes.cpp"
 #include "raster/lanes/for_each_isa.inl"
@@ -19,6 +20,10 @@ namespace softfocus {
 void sample_vectors(Isa isa, const DecodedTexture& texture, const Sampler& sampler,
                     const Profile& profile, const SamplePoints& points, int count, void* colours) {
   SOFTFOCUS_KERNEL(isa, sample_in_lanes)(texture, sampler, profile, points, count, colours);
+}
+
+void decode_halves(Isa isa, const std::uint16_t* from, std::size_t count, float* to) {
+  SOFTFOCUS_KERNEL(isa, decode_halves_in_lanes)(from, count, to);
 }
 
 }  // namespace softfocus
@@ -664,6 +669,12 @@ void sample_in_lanes(const DecodedTexture& texture, const Sampler& sampler, cons
     case swiftshader:
       return sample_batch<swiftshader>(texture, sampler, profile, points, count, colours);
   }
+}
+
+void decode_halves_in_lanes(const std::uint16_t* from, std::size_t count, float* to) {
+  std::size_t i = 0;
+  for (; i + kLanes <= count; i += kLanes) store(to + i, load_halves(from + i));
+  for (; i < count; ++i) to[i] = softfocus::half_to_float(from[i]);
 }
 
 #endif

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 #include "raster/shaders/link_shaders.h"
@@ -49,6 +50,7 @@ class Run {
       width_ = target.width;
       height_ = target.height;
     }
+    find_columns();
     for (const auto& output : program.outputs) {
       if (output.output.builtin >= 0) continue;
       const auto location = static_cast<std::size_t>(output.output.location);
@@ -80,35 +82,75 @@ class Run {
   int width_ = 0, height_ = 0, lanes_ = 0;
   std::array<std::array<const ShaderRegister*, 4>, kMostTargets> outputs_{};
 
-  std::uint32_t input(const ShaderInput& of, const Batch& batch, int lane) const {
+  /// Of columns, as many as batches have: x + 1/2, and their place in the picture.
+  std::vector<float> columns_{}, u_{};
+
+  void find_columns() {
+    const auto count = static_cast<std::size_t>(width_ + lanes_);
+    columns_.resize(count);
+    u_.resize(count);
+    for (std::size_t x = 0; x < count; ++x) {
+      columns_[x] = static_cast<float>(x) + 0.5f;
+      u_[x] = columns_[x] / static_cast<float>(width_);
+    }
+  }
+
+  /// An input's numbers by column; null if they do not depend on it.
+  const float* by_column(const ShaderInput& of) const {
+    if (of.builtin >= 0) {
+      const bool is_x =
+          static_cast<SpirvBuiltin>(of.builtin) == SpirvBuiltin::frag_coord && of.part == 0;
+      return is_x ? columns_.data() : nullptr;
+    }
+    return of.component == 0 && !given(of) ? u_.data() : nullptr;
+  }
+
+  const PassVarying* given(const ShaderInput& of) const {
+    for (const PassVarying& varying : pass_.varyings) {
+      if (varying.location == of.location && varying.component == of.component) return &varying;
+    }
+    return nullptr;
+  }
+
+  /// An input of a row that does not depend on the column.
+  std::uint32_t of_row(const ShaderInput& of, int row) const {
     const auto bits = [](float value) { return std::bit_cast<std::uint32_t>(value); };
-    const auto x = static_cast<float>(batch.column(lane)) + 0.5f;
-    const auto y = static_cast<float>(batch.row(lane)) + 0.5f;
+    const float y = static_cast<float>(row) + 0.5f;
     switch (static_cast<SpirvBuiltin>(of.builtin)) {
-      case SpirvBuiltin::frag_coord:
-        return bits(of.part == 0 ? x : of.part == 1 ? y : of.part == 2 ? 0.5f : 1.0f);
+      case SpirvBuiltin::frag_coord: return bits(of.part == 1 ? y : of.part == 2 ? 0.5f : 1.0f);
       case SpirvBuiltin::point_coord: return bits(0.5f);
       case SpirvBuiltin::front_facing: return ~0u;
       default: break;
     }
     if (of.builtin >= 0) return 0;
-    for (const PassVarying& varying : pass_.varyings) {
-      if (varying.location == of.location && varying.component == of.component) {
-        return bits(varying.value);
-      }
-    }
-    // The place in the picture.
-    if (of.component == 0) return bits(x / static_cast<float>(width_));
+    if (const PassVarying* varying = given(of)) return bits(varying->value);
+    // The place in the picture: u, v, 0, 1.
     if (of.component == 1) return bits(y / static_cast<float>(height_));
     return bits(of.component == 3 ? 1.0f : 0.0f);
   }
 
-  void run_batch(const Batch& batch, BatchMemory& memory) {
-    batches_.run(memory, [&](const ShaderInput& of, std::span<std::uint32_t> to) {
-      for (int lane = 0; lane < lanes_; ++lane) {
-        to[static_cast<std::size_t>(lane)] = input(of, batch, lane);
+  void fill(const ShaderInput& of, const Batch& batch, std::span<std::uint32_t> to) const {
+    const float* const columns = by_column(of);
+    if (!batch.quads) {
+      if (columns != nullptr) {
+        std::memcpy(to.data(), columns + batch.x, to.size_bytes());
+      } else {
+        std::fill(to.begin(), to.end(), of_row(of, batch.y));
       }
-    });
+      return;
+    }
+    const std::array rows{columns != nullptr ? 0u : of_row(of, batch.y),
+                          columns != nullptr ? 0u : of_row(of, batch.y + 1)};
+    for (int lane = 0; lane < lanes_; ++lane) {
+      to[static_cast<std::size_t>(lane)] =
+          columns != nullptr ? std::bit_cast<std::uint32_t>(columns[batch.column(lane)])
+                             : rows[static_cast<std::size_t>(lane >> 1 & 1)];
+    }
+  }
+
+  void run_batch(const Batch& batch, BatchMemory& memory) {
+    batches_.run(memory,
+                 [&](const ShaderInput& of, std::span<std::uint32_t> to) { fill(of, batch, to); });
     for (std::size_t i = 0; i < std::min(pass_.targets.size(), kMostTargets); ++i) {
       if (pass_.targets[i].texels != nullptr) store(i, batch, memory);
     }
@@ -129,14 +171,17 @@ class Run {
           channels[c] = reinterpret_cast<const float*>(batches_.place(memory, *from));
           continue;
         }
-        for (int i = 0; i < columns; ++i) {
-          const int lane = rows == 1 ? i : i / 2 * 4 + row * 2 + (i & 1);
-          values[c][static_cast<std::size_t>(i)] =
-              from == nullptr ? 0.0f
-                              : reinterpret_cast<const float*>(
-                                    batches_.place(memory, *from))[from->varies ? lane : 0];
-        }
         channels[c] = values[c].data();
+        const float* const all =
+            from == nullptr ? nullptr
+                            : reinterpret_cast<const float*>(batches_.place(memory, *from));
+        if (from == nullptr || !from->varies) {
+          std::fill_n(values[c].begin(), columns, all != nullptr ? all[0] : 0.0f);
+          continue;
+        }
+        for (int i = 0; i < columns; ++i) {
+          values[c][static_cast<std::size_t>(i)] = all[i / 2 * 4 + row * 2 + (i & 1)];
+        }
       }
       const std::int32_t* dead = nullptr;
       if (program_.killed.is_there) {

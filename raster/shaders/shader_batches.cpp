@@ -55,7 +55,7 @@ void ShaderBatches::decode_textures() {
     if (same != decoded_.end()) {
       of.decoded = &*same;
     } else {
-      decoded_.push_back(decode_texture(*of.texture, profile_));
+      decoded_.push_back(decode_texture(*of.texture, profile_, isa_));
       of.decoded = &decoded_.back();
     }
   }

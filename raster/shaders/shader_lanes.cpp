@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <type_traits>
 
 #include "raster/images/decoded_texture.h"
 #include "raster/images/texel.h"
@@ -144,13 +145,22 @@ void store_lanes(Isa isa, const float* const* channels, const std::int32_t* kill
     (channels, count, profile.half_store, reinterpret_cast<std::uint16_t*>(to));
     return;
   }
-  Image one = make_image(format, 1, 1);
-  for (int i = 0; i < count; ++i) {
-    if (killed != nullptr && killed[i] != 0) continue;
-    store_texel(one, 0, 0, {channels[0][i], channels[1][i], channels[2][i], channels[3][i]},
-                profile);
-    std::memcpy(to + static_cast<std::size_t>(i) * bytes_per_texel(format), one.bytes.data(),
-                bytes_per_texel(format));
+  const ImageView row = view_of(format, to, count, 1);
+  const auto store_as = [&]<Format kFormat>(std::integral_constant<Format, kFormat>) {
+    for (int i = 0; i < count; ++i) {
+      if (killed != nullptr && killed[i] != 0) continue;
+      store_texel<kFormat>(
+          row, i, 0, {channels[0][i], channels[1][i], channels[2][i], channels[3][i]}, profile);
+    }
+  };
+  switch (format) {
+    case Format::r8: return store_as(std::integral_constant<Format, Format::r8>{});
+    case Format::rgba8: return store_as(std::integral_constant<Format, Format::rgba8>{});
+    case Format::srgb8: return store_as(std::integral_constant<Format, Format::srgb8>{});
+    case Format::rgba16f: return store_as(std::integral_constant<Format, Format::rgba16f>{});
+    case Format::r32f: return store_as(std::integral_constant<Format, Format::r32f>{});
+    case Format::rgba32f: return store_as(std::integral_constant<Format, Format::rgba32f>{});
+    case Format::rg16f: return store_as(std::integral_constant<Format, Format::rg16f>{});
   }
 }
 
