@@ -6,7 +6,6 @@
 #include "raster/shaders/glsl/glsl.h"
 #include "scenes/draw/draw_scene.h"
 #include "scenes/draw/object_numbers.h"
-#include "scenes/lens_views/lens_view_method.h"
 #include "scenes/load/load_scene.h"
 #include "tests/support/raster_helpers.h"
 #include "tests/support/run_program.h"
@@ -89,7 +88,7 @@ TEST_CASE("our own surface shaders as a material draw the bits of the usual surf
       for (std::size_t layer = 0; layer < 3; ++layer) CHECK(a[layer].bytes == b[layer].bytes);
     }
   }
-  // Of those who draw objects by other colours, and of views through the lens.
+  // Objects in other colours, too.
   ThreadPool pool{2};
   const CameraMatrices camera = camera_matrices(usual.camera, 0.0, 120, 90);
   CHECK(draw_object_numbers(usual, camera, 0.0, 120, 90, {}, pool) ==
