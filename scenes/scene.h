@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -93,6 +94,8 @@ struct Light {
 };
 inline constexpr double kMostAngularRadius = 90.0;
 
+struct SurfaceShaders;  // surfaces/shader_surface.h
+
 /// Blinn-Phong, evaluated at the vertices.
 struct Material {
   std::string name;
@@ -111,6 +114,7 @@ struct Material {
   bool cut_out = false;
   bool two_sided = false;  ///< drawn from both sides, lit on the side that is seen
   bool lit = true;         ///< false: the diffuse colour (times texture) as it is
+  std::shared_ptr<const SurfaceShaders> shaders{};  ///< a user's, in place of the usual ones
 };
 
 /// Triangles, counter-clockwise seen from outside. One normal a vertex, unit length;

@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <utility>
 
 #include "raster/images/texel.h"
@@ -70,6 +71,8 @@ SurfaceDraw surface_draw(const Scene& scene, const Object& object, const CameraM
                 glm::mat4{to_world},
                 normal_matrix(to_world),
                 glm::vec3{camera.eye}};
+  draw.shaders = material.shaders.get();
+  draw.matrices = {to_world, camera.world_to_eye, camera.eye_to_clip, frame};
   return draw;
 }
 
@@ -121,8 +124,42 @@ void draw_slowly(const SurfaceDraw& surface, std::span<const std::uint32_t> indi
        fragment_stage<N>(surface, pass.profile));
 }
 
+std::vector<ShaderTexture> shader_textures(const PreparedScene& prepared,
+                                           const SurfaceShader& shader) {
+  std::vector<ShaderTexture> textures;
+  textures.reserve(shader.textures.size());
+  for (const ShaderSurfaceTexture& of : shader.textures) {
+    ShaderTexture& to = textures.emplace_back();
+    if (!of.is_there) continue;
+    to.texture = &prepared.scene->textures[of.texture];
+    to.sampler = of.sampler;
+    // Without lanes nothing is decoded beforehand, and record_surfaces() decodes opacities alone.
+    const bool is_decoded =
+        of.texture < prepared.textures.size() && prepared.textures[of.texture].source != nullptr;
+    if (is_decoded) to.decoded = &prepared.textures[of.texture];
+  }
+  return textures;
+}
+
+void draw_by_shaders(const PreparedScene& prepared, const SurfaceDraw& surface,
+                     std::span<const std::uint32_t> indices, RenderPass& pass) {
+  const Rectangle target = target_area(pass.targets);
+  ShaderDraw draw =
+      shader_draw(*surface.shaders, surface.input, surface.matrices, target.x_end, target.y_end);
+  draw.vertex_textures = shader_textures(prepared, surface.shaders->vertex);
+  draw.fragment_textures = shader_textures(prepared, surface.shaders->fragment);
+  draw.texel.colour = surface.colour;
+  if (surface.opacity.blends) {
+    draw.texel.opacity = surface.opacity.value;
+  } else {
+    draw.texel.most_w = alpha_depth(std::numeric_limits<float>::infinity());
+  }
+  draw_shaders(pass, surface.state, indices, vertex_count(surface), draw);
+}
+
 void draw_surface(const PreparedScene& prepared, const SurfaceDraw& surface,
                   std::span<const std::uint32_t> indices, RenderPass& pass) {
+  if (surface.shaders != nullptr) return draw_by_shaders(prepared, surface, indices, pass);
   const SurfaceVariant& variant = surface.variant;
   if (can_draw_in_lanes(pass, surface.state)) {
     auto in_lanes = fragment_stage<kMostSurfaceVaryings>(surface, pass.profile);
@@ -227,6 +264,7 @@ void record_scene_part(const PreparedScene& prepared, const CameraMatrices& came
     if (!materials.empty()) {
       surface.input.material = &materials[static_cast<std::size_t>(
           surface.input.material - prepared.scene->materials.data())];
+      surface.shaders = nullptr;
     }
     const Mesh& mesh = *surface.input.mesh;
     const std::size_t chunks = chunks_of_mesh(mesh);
@@ -257,6 +295,7 @@ void record_surfaces(const PreparedScene& prepared, std::span<const Material> of
     if (surfaces[i].opacity.blends) continue;
     // Which sides are culled stays the scene's choice.
     surfaces[i].input.material = &of_objects[i];
+    surfaces[i].colour = of_objects[i].diffuse;
     surfaces[i].texture = nullptr;
     surfaces[i].variant = {.holed = surfaces[i].variant.holed};
     draw_surface(prepared, surfaces[i], pass);

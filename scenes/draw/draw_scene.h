@@ -20,6 +20,7 @@
 #include "scenes/draw/frame_matrices.h"
 #include "scenes/draw/transparent_layers.h"
 #include "scenes/scene.h"
+#include "scenes/surfaces/shader_surface.h"
 #include "scenes/surfaces/surface_stages.h"
 
 namespace softfocus {
@@ -30,7 +31,10 @@ struct SurfaceDraw {
   SurfaceVertexInput input;
   const Texture* texture;  ///< none if the variant is not textured
   SurfaceOpacity opacity;
-  SurfaceVariant variant;  ///< the features of the material
+  SurfaceVariant variant;                   ///< the features of the material
+  const SurfaceShaders* shaders = nullptr;  ///< a user's, in place of the usual ones
+  ShaderSurfaceMatrices matrices{};         ///< for these
+  std::optional<glm::vec3> colour{};        ///< in place of theirs
 };
 
 /// Whether a surface is blended with what lies behind it.

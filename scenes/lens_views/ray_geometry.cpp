@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 
 #include "raster/images/sampler.h"
 #include "raster/numbers/vector_math.h"
@@ -89,6 +90,10 @@ std::vector<RayMesh> ray_meshes(const Scene& scene, const CameraMatrices& camera
   std::vector<RayMesh> meshes;
   const std::vector<SurfaceDraw> draws = surface_draws(scene, camera, frame);
   for (std::size_t i = 0; i < draws.size(); ++i) {
+    if (draws[i].shaders != nullptr) {
+      throw std::runtime_error("rays cannot shade material '" + draws[i].input.material->name +
+                               "', which has shaders of its own; accumulation draws it");
+    }
     meshes.push_back(ray_mesh(draws[i], camera.world_to_eye, scene.objects[i], frame));
   }
   return meshes;

@@ -37,6 +37,13 @@ std::uint32_t material_named(const Section& section, std::string_view key, const
 /// A colour: three numbers from 0 to `largest`, linear.
 glm::vec3 read_colour(Section& section, std::string_view key, glm::vec3 fallback, double largest);
 
+// --- scene_shaders.cpp ---
+
+/// Reads the keys of a user's shaders in a [material.NAME] table: `vertex`, `fragment`, `uniforms`
+/// and `textures`. Without them the material is left as it is.
+void read_shaders(Section& section, const std::filesystem::path& directory,
+                  const NamedSurfaces& surfaces, Scene& scene, Material& material);
+
 // --- scene_shapes.cpp ---
 
 /// The mesh that the section's `shape` and the keys of that shape describe, with

@@ -53,6 +53,9 @@ UsedNames used_names(const Section& top) {
     const toml::node_view material = file["material"][name];
     add_text(material["texture"], used.textures);
     add_text(material["opacity_texture"], used.textures);
+    if (const toml::table* textures = material["textures"].as_table()) {
+      for (const auto& [key, value] : *textures) add_text(toml::node_view{value}, used.textures);
+    }
   }
   return used;
 }
@@ -192,6 +195,7 @@ NamedSurfaces read_surfaces(Section& top, const std::filesystem::path& directory
   }
   for (auto& [name, section] : read_named_sections(top, "material")) {
     Material material = read_material(section, name, surfaces, scene);
+    read_shaders(section, directory, surfaces, scene, material);
     finish_section(section);
     surfaces.materials[name] = static_cast<std::uint32_t>(scene.materials.size());
     scene.materials.push_back(std::move(material));

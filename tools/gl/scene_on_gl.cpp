@@ -4,6 +4,7 @@
 
 #include "scenes/draw/draw_scene.h"
 #include "scenes/draw/transparent_layers.h"
+#include "scenes/files/scene_error.h"
 
 namespace softfocus {
 namespace {
@@ -66,6 +67,12 @@ void set_state(const DrawState& state) {
 
 GlScene::GlScene(const GlContext& context, const Shaders& shaders, const Scene& scene)
     : context_(context), shaders_(shaders), scene_(scene) {
+  for (const Material& material : scene.materials) {
+    if (material.shaders == nullptr) continue;
+    throw SceneError("--gl: material '" + material.name +
+                     "' has shaders of its own, which drivers are not given; the emulated GPU "
+                     "draws them");
+  }
   for (const softfocus::Mesh& mesh : scene.meshes) {
     std::vector<glm::vec2> uvs = mesh.uvs;
     uvs.resize(mesh.positions.size());
