@@ -157,12 +157,10 @@ void Lowering::add_inputs(SpirvId id, const SpirvDecorations& of) {
     return;
   }
   if (tree_.inputs.size() + what.scalars > kMostScalars) refuse("inputs have too many numbers");
-  const SpirvType* number = &what;
-  while (number->kind != SpirvKind::integer && number->element != 0)
-    number = &type(number->element);
+  const bool is_integer = has_integers(what);
   add_numbers(id, of, [&](int location, int component, int part) {
-    tree_.inputs.push_back({of.builtin, location, component, part, of.is_flat, of.is_linear,
-                            number->kind == SpirvKind::integer});
+    tree_.inputs.push_back(
+        {of.builtin, location, component, part, of.is_flat, of.is_linear, is_integer});
   });
 }
 
@@ -174,9 +172,18 @@ void Lowering::add_outputs(std::uint32_t first, SpirvId id, const SpirvDecoratio
     });
     return;
   }
+  const bool is_integer = has_integers(type(id));
   add_numbers(id, of, [&](int location, int component, int) {
-    tree_.outputs.push_back({of.builtin, location, component, first++});
+    tree_.outputs.push_back({of.builtin, location, component, first++, is_integer});
   });
+}
+
+bool Lowering::has_integers(const SpirvType& of) const {
+  const SpirvType* number = &of;
+  while (number->kind != SpirvKind::integer && number->element != 0) {
+    number = &type(number->element);
+  }
+  return number->kind == SpirvKind::integer;
 }
 
 int Lowering::locations(SpirvId id) const {

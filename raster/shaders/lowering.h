@@ -105,6 +105,7 @@ class Lowering {
 
   void add_inputs(SpirvId id, const SpirvDecorations& of);
   void add_outputs(std::uint32_t first, SpirvId id, const SpirvDecorations& of);
+  bool has_integers(const SpirvType& of) const;
   int locations(SpirvId id) const;
   /// body(type, decorations) for each member of a structure, which has a location of its own.
   template <class Body>

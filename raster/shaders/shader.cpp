@@ -46,6 +46,7 @@ class Run {
       const auto component = static_cast<std::size_t>(output.output.component);
       if (location >= outputs_.size() || component >= 4) continue;
       outputs_[location][component] = &output.from;
+      are_bits_[location] = output.output.is_integer;
     }
   }
 
@@ -70,6 +71,7 @@ class Run {
   ShaderBatches batches_;
   int width_ = 0, height_ = 0, lanes_ = 0;
   std::array<std::array<const ShaderRegister*, 4>, kMostTargets> outputs_{};
+  std::array<bool, kMostTargets> are_bits_{};
 
   std::uint32_t input(const ShaderInput& of, const Batch& batch, int lane) const {
     const auto bits = [](float value) { return std::bit_cast<std::uint32_t>(value); };
@@ -141,7 +143,8 @@ class Run {
       store_lanes(pool_.isa(), channels.data(), dead, count, to.format, pass_.profile,
                   to.texels + (batch.y + row) * to.stride_bytes +
                       static_cast<std::ptrdiff_t>(batch.x) *
-                          static_cast<std::ptrdiff_t>(bytes_per_texel(to.format)));
+                          static_cast<std::ptrdiff_t>(bytes_per_texel(to.format)),
+                  are_bits_[target]);
     }
   }
 };

@@ -42,7 +42,8 @@ struct PassVarying {
 
 struct ShaderPass {
   std::span<const ShaderTexture> textures{};  ///< by their numbers
-  /// By location; those without texels are left out. All of one size.
+  /// By location; those without texels are left out. All of one size. Whole numbers go into
+  /// rgba32f, bit by bit.
   std::span<const ImageView> targets{};
   /// Inputs that are not among them are the place in the picture: u, v, 0, 1.
   std::span<const PassVarying> varyings{};

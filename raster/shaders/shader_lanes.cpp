@@ -138,7 +138,16 @@ bool run_lanes(const LaneProgram& program, LaneFrame& frame, Isa isa, std::size_
 }
 
 void store_lanes(Isa isa, const float* const* channels, const std::int32_t* killed, int count,
-                 Format format, const Profile& profile, std::byte* to) {
+                 Format format, const Profile& profile, std::byte* to, bool are_bits) {
+  if (format == Format::rgba32f && are_bits) {
+    for (int i = 0; i < count; ++i) {
+      if (killed != nullptr && killed[i] != 0) continue;
+      for (std::size_t c = 0; c < 4; ++c) {
+        std::memcpy(to + static_cast<std::size_t>(i) * 16 + 4 * c, channels[c] + i, 4);
+      }
+    }
+    return;
+  }
   if (format == Format::rgba16f && killed == nullptr) {
     SOFTFOCUS_KERNEL(isa, store_half_lanes)
     (channels, count, profile.half_store, reinterpret_cast<std::uint16_t*>(to));

@@ -82,8 +82,9 @@ LaneProgram lane_program(const ShaderProgram& program, int lanes, Isa isa);
 bool run_lanes(const LaneProgram& program, LaneFrame& frame, Isa isa, std::size_t& stopped);
 
 /// Stores `count` lanes of four registers as texels of a row. A texel whose lane is set in `killed`
-/// stays as it is; if `killed` is null, none does.
+/// stays as it is; if `killed` is null, none does. `are_bits`: in rgba32f the numbers are whole
+/// ones, stored bit by bit.
 void store_lanes(Isa isa, const float* const* channels, const std::int32_t* killed, int count,
-                 Format format, const Profile& profile, std::byte* to);
+                 Format format, const Profile& profile, std::byte* to, bool are_bits = false);
 
 }  // namespace softfocus
