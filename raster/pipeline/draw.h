@@ -64,19 +64,21 @@ void add_triangle(const Draw& draw, Chunk<N>& chunk, const std::array<WindowVert
 }
 
 // Whether the triangles begin <= t < end are culled by unsnapped positions too. Mesa sends a
-// whole batch through its clipping stages if any vertex is outside.
-template <class Draw>
-bool culls_unsnapped(const Draw& draw, std::size_t begin, std::size_t end) {
+// whole batch through its clipping stages if any vertex is outside. position(i) is a vertex's.
+template <class Draw, class Position>
+bool culls_unsnapped(const Draw& draw, std::size_t begin, std::size_t end,
+                     const Position& position) {
   if (draw.state.cull == Cull::none || draw.profile.clipping != Clipping::mesa) return false;
   const auto indices = draw.indices.subspan(3 * begin, 3 * (end - begin));
   return std::any_of(indices.begin(), indices.end(), [&](std::uint32_t i) {
-    return clip_code(draw.vertices[i].position, draw.profile.guard_band) != 0;
+    return clip_code(position(i), draw.profile.guard_band) != 0;
   });
 }
 
 template <class Draw, std::size_t N>
 void assemble_batch(const Draw& draw, Chunk<N>& chunk, std::size_t begin, std::size_t end) {
-  const bool cull_unsnapped = culls_unsnapped(draw, begin, end);
+  const bool cull_unsnapped =
+      culls_unsnapped(draw, begin, end, [&](std::uint32_t i) { return draw.vertices[i].position; });
   for (std::size_t t = begin; t < end; ++t) {
     std::array<VertexOutput<N>, 3> corners;
     for (std::size_t i = 0; i < 3; ++i) corners[i] = draw.vertices[draw.indices[3 * t + i]];
@@ -89,6 +91,12 @@ void assemble_batch(const Draw& draw, Chunk<N>& chunk, std::size_t begin, std::s
   }
 }
 
+inline void sort_bins(std::vector<Bin>& bins) {
+  std::sort(bins.begin(), bins.end(), [](const Bin& a, const Bin& b) {
+    return a.tile != b.tile ? a.tile < b.tile : a.triangle < b.triangle;
+  });
+}
+
 template <class Draw, std::size_t N>
 void assemble_chunk(const Draw& draw, Chunk<N>& chunk, std::uint32_t number) {
   const std::size_t triangle_count = draw.indices.size() / 3;
@@ -97,9 +105,7 @@ void assemble_chunk(const Draw& draw, Chunk<N>& chunk, std::uint32_t number) {
   for (std::size_t begin = chunk_begin; begin < chunk_end; begin += kBatchTriangles) {
     assemble_batch(draw, chunk, begin, std::min(begin + kBatchTriangles, chunk_end));
   }
-  std::sort(chunk.bins.begin(), chunk.bins.end(), [](const Bin& a, const Bin& b) {
-    return a.tile != b.tile ? a.tile < b.tile : a.triangle < b.triangle;
-  });
+  sort_bins(chunk.bins);
 }
 
 // Clamped to 0..1. NaN, which planes give if a sliver's area rounds to 0, becomes 1. softpipe

@@ -27,6 +27,16 @@ struct Interpolated {
   Varyings<N> varyings;
 };
 
+/// All of a pixel.
+template <std::size_t N, class Interpolator>
+Interpolated<N> interpolated(const Interpolator& interpolator, int x, int y) {
+  const auto pixel = interpolator.pixel(x, y);
+  Interpolated<N> result;
+  result.depth = interpolator.depth(pixel);
+  for (std::size_t i = 0; i < N; ++i) result.varyings[i] = interpolator.varying(pixel, i);
+  return result;
+}
+
 /// By barycentric weights from the exact edge functions E_0, E_1, E_2 at the pixel:
 ///   l_i = float(E_i) * (1 / float(area))                            linear weights
 ///   p_i = l_i * inverse_w_i;  s = (p_0 + p_1) + p_2;  q_i = p_i * (1 / s)
@@ -48,7 +58,13 @@ struct BarycentricInterpolator {
         functions(std::get<EdgeFunctions>(t.setup.coverage)),
         inverse_area(1.0f / static_cast<float>(functions.area)) {}
 
-  Interpolated<N> at(int x, int y) const {
+  /// A pixel's weights: l_1, l_2, q_1, q_2; and 1 / w there.
+  struct Pixel {
+    float l1, l2, q1, q2;
+    float inverse_w;
+  };
+
+  Pixel pixel(int x, int y) const {
     const auto& v = triangle.setup.vertices;
     const auto weight = [&](std::size_t i) {
       return static_cast<float>(edge_at(functions.edges[i], x, y)) * inverse_area;
@@ -58,28 +74,33 @@ struct BarycentricInterpolator {
     const float l2 = weight(2);
     const float p1 = l1 * v[1].inverse_w;
     const float p2 = l2 * v[2].inverse_w;
-    const float reciprocal = 1.0f / ((l0 * v[0].inverse_w + p1) + p2);
-    const float q1 = p1 * reciprocal;
-    const float q2 = p2 * reciprocal;
+    const float inverse_w = (l0 * v[0].inverse_w + p1) + p2;
+    const float reciprocal = 1.0f / inverse_w;
+    return {l1, l2, p1 * reciprocal, p2 * reciprocal, inverse_w};
+  }
 
-    const auto blend = [](float a0, float a1, float a2, float w1, float w2) {
-      return (a0 + w1 * (a1 - a0)) + w2 * (a2 - a0);
-    };
-    Interpolated<N> result;
-    result.depth = blend(v[0].depth, v[1].depth, v[2].depth, l1, l2);
-    for (std::size_t i = 0; i < N; ++i) {
-      const float a0 = triangle.varyings[0][i];
-      const float a1 = triangle.varyings[1][i];
-      const float a2 = triangle.varyings[2][i];
-      switch (kinds[i]) {
-        case Interpolation::perspective: result.varyings[i] = blend(a0, a1, a2, q1, q2); break;
-        case Interpolation::linear: result.varyings[i] = blend(a0, a1, a2, l1, l2); break;
-        case Interpolation::flat:
-          result.varyings[i] = triangle.varyings[triangle.provoking][i];
-          break;
-      }
+  float depth(const Pixel& at) const {
+    const auto& v = triangle.setup.vertices;
+    return blend(v[0].depth, v[1].depth, v[2].depth, at.l1, at.l2);
+  }
+
+  float varying(const Pixel& at, std::size_t i) const {
+    const float a0 = triangle.varyings[0][i];
+    const float a1 = triangle.varyings[1][i];
+    const float a2 = triangle.varyings[2][i];
+    switch (kinds[i]) {
+      case Interpolation::perspective: return blend(a0, a1, a2, at.q1, at.q2);
+      case Interpolation::linear: return blend(a0, a1, a2, at.l1, at.l2);
+      case Interpolation::flat: break;
     }
-    return result;
+    return triangle.varyings[triangle.provoking][i];
+  }
+
+  Interpolated<N> at(int x, int y) const { return interpolated<N>(*this, x, y); }
+
+ private:
+  static float blend(float a0, float a1, float a2, float w1, float w2) {
+    return (a0 + w1 * (a1 - a0)) + w2 * (a2 - a0);
   }
 };
 
@@ -89,7 +110,7 @@ template <class Planes, std::size_t N>
 struct PlaneInterpolator {
   const std::array<Interpolation, N>& kinds;
   Planes planes;
-  Plane depth;
+  Plane depth_plane;
   Plane inverse_w;
   std::array<Plane, N> varyings;
 
@@ -97,7 +118,7 @@ struct PlaneInterpolator {
                     const std::array<Interpolation, N>& interpolation)
       : kinds(interpolation), planes(triangle.setup, triangle.provoking, profile) {
     const auto& v = triangle.setup.vertices;
-    depth = planes.plane({v[0].depth, v[1].depth, v[2].depth});
+    depth_plane = planes.plane({v[0].depth, v[1].depth, v[2].depth});
     inverse_w = planes.plane({v[0].inverse_w, v[1].inverse_w, v[2].inverse_w});
     for (std::size_t i = 0; i < N; ++i) {
       const float a0 = triangle.varyings[0][i];
@@ -116,21 +137,26 @@ struct PlaneInterpolator {
     }
   }
 
-  Interpolated<N> at(int x, int y) const {
-    Interpolated<N> result;
-    result.depth = planes.at(depth, x, y);
-    const float inverse_w_here = planes.at(inverse_w, x, y);
-    for (std::size_t i = 0; i < N; ++i) {
-      switch (kinds[i]) {
-        case Interpolation::perspective:
-          result.varyings[i] = Planes::divide(planes.at(varyings[i], x, y), inverse_w_here);
-          break;
-        case Interpolation::linear: result.varyings[i] = planes.at(varyings[i], x, y); break;
-        case Interpolation::flat: result.varyings[i] = varyings[i].at_origin; break;
-      }
+  struct Pixel {
+    int x, y;
+    float inverse_w;
+  };
+
+  Pixel pixel(int x, int y) const { return {x, y, planes.at(inverse_w, x, y)}; }
+
+  float depth(const Pixel& at) const { return planes.at(depth_plane, at.x, at.y); }
+
+  float varying(const Pixel& at, std::size_t i) const {
+    switch (kinds[i]) {
+      case Interpolation::perspective:
+        return Planes::divide(planes.at(varyings[i], at.x, at.y), at.inverse_w);
+      case Interpolation::linear: return planes.at(varyings[i], at.x, at.y);
+      case Interpolation::flat: break;
     }
-    return result;
+    return varyings[i].at_origin;
   }
+
+  Interpolated<N> at(int x, int y) const { return interpolated<N>(*this, x, y); }
 };
 
 }  // namespace softfocus

@@ -165,9 +165,10 @@ std::vector<ShaderPort> outputs_of(const SpirvModule& module) {
 }
 
 void give_locations(SpirvModule& module) {
-  std::vector<ShaderPort> inputs = inputs_of(module);
-  for (ShaderPort& port : inputs) {
-    if (port.location < 0) set_location(module, port, free_location(inputs));
+  std::vector<ShaderPort> ports =
+      module.stage == ShaderStage::vertex ? inputs_of(module) : outputs_of(module);
+  for (ShaderPort& port : ports) {
+    if (port.location < 0) set_location(module, port, free_location(ports));
   }
 }
 
@@ -215,6 +216,13 @@ void link_shaders(UserShader& vertex, UserShader& fragment) {
     set_location(*vertex.module, output, free);
     free += output.locations;
   }
+}
+
+ShaderPair make_shader_pair(std::vector<std::uint32_t> vertex_words,
+                            std::vector<std::uint32_t> fragment_words) {
+  ShaderPair made{make_shader(std::move(vertex_words)), make_shader(std::move(fragment_words))};
+  link_shaders(made.vertex, made.fragment);
+  return made;
 }
 
 }  // namespace softfocus

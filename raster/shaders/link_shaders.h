@@ -24,7 +24,7 @@ struct ShaderPort {
 std::vector<ShaderPort> inputs_of(const SpirvModule& module);
 std::vector<ShaderPort> outputs_of(const SpirvModule& module);
 
-/// Gives a location to the inputs that have none.
+/// Gives a location to inputs of a vertex shader and outputs of a fragment shader that have none.
 void give_locations(SpirvModule& module);
 
 /// Gives a location to all inputs and outputs that have none: those of one name in both shaders
@@ -32,5 +32,14 @@ void give_locations(SpirvModule& module);
 /// gl_SecondaryColor likewise. Throws ShaderError if the shaders are not of these stages, if an
 /// input of the fragment shader has no output, or if the output has other numbers.
 void link_shaders(UserShader& vertex, UserShader& fragment);
+
+/// Two shaders that are linked.
+struct ShaderPair {
+  UserShader vertex{}, fragment{};
+};
+
+/// Throws ShaderError as make_shader() and link_shaders() do.
+ShaderPair make_shader_pair(std::vector<std::uint32_t> vertex_words,
+                            std::vector<std::uint32_t> fragment_words);
 
 }  // namespace softfocus

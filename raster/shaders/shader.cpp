@@ -154,7 +154,7 @@ class Run {
 UserShader make_shader(std::vector<std::uint32_t> words) {
   UserShader made;
   made.module = std::make_unique<SpirvModule>(read_spirv(std::move(words)));
-  if (made.module->stage == ShaderStage::vertex) give_locations(*made.module);
+  give_locations(*made.module);
   made.uniforms = uniforms_of(*made.module);
   return made;
 }

@@ -25,7 +25,8 @@ struct UserShader {
   ShaderUniforms uniforms{};
 };
 
-/// Inputs of a vertex shader that have no location get one. Throws ShaderError.
+/// Inputs of a vertex shader and outputs of a fragment shader that have no location get one. Throws
+/// ShaderError.
 UserShader make_shader(std::vector<std::uint32_t> words);
 
 /// The uniform of that name ("tint", "light.colour", "tint[0]" is "tint"), or null.

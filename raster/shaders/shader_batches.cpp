@@ -24,6 +24,7 @@ ShaderBatches::ShaderBatches(const ShaderProgram& program, const BatchSettings& 
     : program_(program),
       profile_(settings.profile),
       budget_(settings.budget),
+      y_is_up_(settings.y_is_up),
       isa_(isa),
       lane_program_(
           lane_program(program, settings.lanes != 0 ? settings.lanes : lanes_for(program), isa)),
@@ -74,7 +75,8 @@ void ShaderBatches::run_steps(BatchMemory& memory) const {
                   .samples = lane_program_.samples,
                   .tables = lane_program_.tables,
                   .profile = &profile_,
-                  .budget = budget_};
+                  .budget = budget_,
+                  .y_is_up = y_is_up_};
   std::size_t step = 0;
   if (run_lanes(lane_program_, frame, isa_, step)) return;
   throw ShaderError(place_of(program_.files, program_.steps[step].line) +

@@ -17,6 +17,7 @@ struct BatchSettings {
   Profile profile{};
   std::uint64_t budget = 0;  ///< turns of loops that a batch may take
   int lanes = 0;             ///< 0: as many as are fastest
+  bool y_is_up = false;      ///< dFdy is upwards
 };
 
 /// The registers of one thread, made on first use.
@@ -56,6 +57,7 @@ class ShaderBatches {
   const ShaderProgram& program_;
   Profile profile_;
   std::uint64_t budget_;
+  bool y_is_up_;
   Isa isa_;
   LaneProgram lane_program_;
   std::vector<DecodedTexture> decoded_{};

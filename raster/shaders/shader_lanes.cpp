@@ -286,6 +286,9 @@ void run_derivative(const LaneStep& step, LaneFrame& frame) {
     if constexpr (op == ShaderOp::derivative_x) made = along_x(v);
     if constexpr (op == ShaderOp::derivative_x_coarse) made = spread<1>(v) - spread<0>(v);
     if constexpr (op == ShaderOp::derivative_y_coarse) made = spread<2>(v) - spread<0>(v);
+    if constexpr (op == ShaderOp::derivative_y || op == ShaderOp::derivative_y_coarse) {
+      if (frame.y_is_up) made = -made;
+    }
     put_bits(to, as_bits(made));
     a += step.a_next;
     to += sizeof(Bits);
@@ -426,6 +429,12 @@ SOFTFOCUS_INLINE Floats floats_of(const LaneSample::At& at, const LaneFrame& fra
   return as_floats(as_bits(numbers_of(at, frame, vector)));
 }
 
+// One level for all of a block, as GPUs have it.
+SOFTFOCUS_INLINE Floats along_row(Floats v, bool lower) {
+  return lower ? spread<3>(v) - spread<2>(v) : spread<1>(v) - spread<0>(v);
+}
+SOFTFOCUS_INLINE Floats along_left_column(Floats v) { return spread<2>(v) - spread<0>(v); }
+
 SOFTFOCUS_INLINE Floats level_of(const LaneSample& sample, const ShaderTexture& from,
                                  const LaneFrame& frame, int vector) {
   const Profile& profile = *frame.profile;
@@ -441,8 +450,9 @@ SOFTFOCUS_INLINE Floats level_of(const LaneSample& sample, const ShaderTexture& 
   if (from.texture->levels.size() == 1) return splat(0.0f);
   const Floats u = floats_of(sample.at[0], frame, vector);
   const Floats v = floats_of(sample.at[1], frame, vector);
-  return level_of_detail_lanes(*from.decoded, profile, along_x(u), along_x(v), along_y(u),
-                               along_y(v)) +
+  const bool lower = profile.attributes == AttributeSetup::planes_by_quad;
+  return level_of_detail_lanes(*from.decoded, profile, along_row(u, lower), along_row(v, lower),
+                               along_left_column(u), along_left_column(v)) +
          floats_of(sample.more[0], frame, vector);
 }
 

@@ -57,6 +57,7 @@ struct LaneFrame {
   std::span<const std::uint32_t> tables{};
   const Profile* profile = nullptr;
   std::uint64_t budget = 0;  ///< turns of loops that are left
+  bool y_is_up = false;      ///< dFdy is towards the upper row of a block
 };
 
 /// The texture that a sample reads, of its first lane; null if there is none.

@@ -85,12 +85,13 @@ float level_of(const LaneSample& sample, const Lane& lane, const ShaderTexture& 
         {lane.number(sample.more[3]), is_one ? 0.0f : lane.number(sample.more[4])}, profile);
   }
   if (sample.sample.kind == SampleKind::level) return lane.number(sample.more[0]);
-  const int first = lane.lane & ~3, row = lane.lane & 2, column = lane.lane & 1;
+  const int first = lane.lane & ~3;
+  const int row = profile.attributes == AttributeSetup::planes_by_quad ? 2 : 0;
   const auto along_x = [&](const At& at) {
     return lane.number_of(at, first + row + 1) - lane.number_of(at, first + row);
   };
   const auto along_y = [&](const At& at) {
-    return lane.number_of(at, first + column + 2) - lane.number_of(at, first + column);
+    return lane.number_of(at, first + 2) - lane.number_of(at, first);
   };
   if (from.texture->levels.size() == 1 && sample.sample.kind == SampleKind::implicit) return 0.0f;
   const float lod = level_of_detail(*from.texture, {along_x(sample.at[0]), along_x(sample.at[1])},

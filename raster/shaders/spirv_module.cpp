@@ -385,15 +385,16 @@ class Reader {
     const auto is = [&](std::initializer_list<std::uint32_t> list) {
       return std::find(list.begin(), list.end(), number) != list.end();
     };
-    if (is({2})) refuse("geometry shaders are not supported");
     if (is({3})) refuse("tessellation is not supported");
     if (is({10})) refuse("double is not supported; use float");
     if (is({11, 12, 21})) refuse("atomic counters and 64-bit integers are not supported");
   }
 
   void take_entry_point(Operands w) {
-    constexpr std::uint32_t kVertex = 0, kFragment = 4;
+    constexpr std::uint32_t kVertex = 0, kGeometry = 3, kFragment = 4;
     const std::uint32_t model = word(w, 0);
+    // Its capability says nothing: gl_PrimitiveID of a fragment shader has it, too.
+    if (model == kGeometry) refuse("geometry shaders are not supported");
     if (model != kVertex && model != kFragment) {
       refuse("shaders of this stage are not supported; vertex and fragment shaders are");
     }
