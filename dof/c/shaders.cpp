@@ -4,6 +4,8 @@
 
 #include <bit>
 #include <cmath>
+#include <memory>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,27 +14,26 @@
 
 #include "dof/c/context.h"
 #include "dof/c/settings.h"
+#include "dof/c/shader_arguments.h"
 #include "raster/images/sampler.h"
+#include "raster/shaders/draw_shaders.h"
 #include "raster/shaders/glsl/glsl.h"
+#include "raster/shaders/link_shaders.h"
 #include "raster/threads/loops.h"
 
 using namespace softfocus;
 
 struct softfocus_shader {
   UserShader shader{};
-  std::vector<std::uint32_t> words{};      // of the uniforms
-  std::optional<ShaderProgram> program{};  // with these words
-  std::vector<Texture> textures{};         // by their numbers
-  std::vector<Sampler> samplers{};
+  std::vector<std::uint32_t> words{};              // of the uniforms
+  std::shared_ptr<const ShaderProgram> program{};  // with these words; made when it is needed
+  bool is_linked = false;
+  std::vector<Texture> textures{};        // by their numbers
+  std::vector<ShaderTexture> samplers{};  // without the textures
 };
 
 namespace softfocus {
 namespace {
-
-bool is_texture(const ShaderUniform& of) {
-  return of.kind == SpirvKind::sampled_image || of.kind == SpirvKind::image ||
-         of.kind == SpirvKind::sampler;
-}
 
 softfocus_shader& given(softfocus_shader* shader) {
   if (shader == nullptr) refuse("shader", "a null pointer");
@@ -77,9 +78,12 @@ std::vector<std::uint32_t> words_of(const softfocus_shader_source& source) {
   return compile_glsl(text, [](const std::string&) { return std::nullopt; }).words;
 }
 
-const ShaderProgram& program_of(softfocus_shader& shader) {
-  if (!shader.program) shader.program = compile_shader(shader.shader, shader.words);
-  return *shader.program;
+std::shared_ptr<const ShaderProgram> program_of(softfocus_shader& shader) {
+  if (shader.program == nullptr) {
+    shader.program =
+        std::make_shared<const ShaderProgram>(compile_shader(shader.shader, shader.words));
+  }
+  return shader.program;
 }
 
 // --- uniforms ---
@@ -140,97 +144,29 @@ std::uint32_t word_of(const ShaderUniform& of, std::size_t index, double number)
   return static_cast<std::uint32_t>(static_cast<std::int64_t>(number));
 }
 
-// --- texels ---
+// --- drawing ---
 
-Format texel_format(const std::string& name, std::int32_t format) {
-  switch (format) {
-    case SOFTFOCUS_FORMAT_R8: return Format::r8;
-    case SOFTFOCUS_FORMAT_RGBA8: return Format::rgba8;
-    case SOFTFOCUS_FORMAT_SRGB8: return Format::srgb8;
-    case SOFTFOCUS_FORMAT_RGBA16F: return Format::rgba16f;
-    case SOFTFOCUS_FORMAT_R32F: return Format::r32f;
-    case SOFTFOCUS_FORMAT_RGBA32F: return Format::rgba32f;
-    case SOFTFOCUS_FORMAT_RGBA32I:
-    case SOFTFOCUS_FORMAT_RGBA32UI: return Format::rgba32f;
-    default: refuse(name + ".format", std::to_string(format) + " is no softfocus_format");
-  }
+void copy_rows(const ConstImageView& from, const ImageView& to, ThreadPool& pool) {
+  constexpr int kRowsAtOnce = 64;
+  for_each_row(pool, from.height, kRowsAtOnce, [&](int y) {
+    std::memcpy(to.texels + y * to.stride_bytes, from.texels + y * from.stride_bytes,
+                bytes_per_texel(from.format) * static_cast<std::size_t>(from.width));
+  });
 }
 
-/// Texels of a caller's, checked.
-struct ReadTexels {
-  ImageView view{};
-  MemoryRange range{};
-};
-
-ReadTexels read_texels(const std::string& name, const softfocus_texels* from, bool is_written) {
-  const auto texels = read_struct(name, from);
-  const auto is_side = [](std::int32_t side) { return side >= 1 && side <= kMaxImageSize; };
-  if (!is_side(texels.width) || !is_side(texels.height)) {
-    refuse(name, "its width and height are " + std::to_string(texels.width) + " and " +
-                     std::to_string(texels.height) + ", not from 1 to " +
-                     std::to_string(kMaxImageSize));
-  }
-  const Format format = texel_format(name, texels.format);
-  const ImageView view =
-      view_of(format, texels.first, texels.width, texels.height, texels.row_bytes);
-  const auto texel = static_cast<std::ptrdiff_t>(bytes_per_texel(format));
-  const std::ptrdiff_t channel = texel / channel_count(format);
-  const PixelPlane plane{name + ".first", texels.first, texel, view.stride_bytes, texel};
-  const MemoryRange range = range_of(plane, texels.width, texels.height);
-  if (is_written) check_apart(plane, texels.width, texels.height);
-  if (range.begin % static_cast<std::uintptr_t>(channel) != 0 || view.stride_bytes % channel != 0) {
-    refuse(plane.name, "it or row_bytes is not aligned to " + std::to_string(channel) + " bytes");
-  }
-  return {view, range};
+/// OpenGL's lowest row is the emulation's last.
+ImageView upside_down(ImageView image) {
+  image.texels += (image.height - 1) * image.stride_bytes;
+  image.stride_bytes = -image.stride_bytes;
+  return image;
 }
 
-template <class Value>
-Value one_of(const std::string& name, std::int32_t given_value,
-             std::initializer_list<std::pair<int, Value>> values, const char* words) {
-  for (const auto& [number, value] : values) {
-    if (number == given_value) return value;
+std::vector<ShaderTexture> bound_textures(const softfocus_shader& shader) {
+  std::vector<ShaderTexture> bound = shader.samplers;
+  for (std::size_t i = 0; i < bound.size(); ++i) {
+    if (!shader.textures[i].levels.empty()) bound[i].texture = &shader.textures[i];
   }
-  refuse(name, std::to_string(given_value) + " is none; there are " + words);
-}
-
-// --- a run ---
-
-struct ReadPass {
-  std::vector<ImageView> targets{};
-  Profile profile{};
-  std::uint64_t budget = ShaderPass{}.budget;
-};
-
-ReadPass read_pass(const softfocus_pass* from) {
-  const auto pass = read_struct("pass", from);
-  if (pass.target_count < 1 || pass.target_count > SOFTFOCUS_MOST_TARGETS) {
-    refuse("pass.target_count", std::to_string(pass.target_count) + " is not from 1 to " +
-                                    std::to_string(SOFTFOCUS_MOST_TARGETS));
-  }
-  if (pass.targets == nullptr) refuse("pass.targets", "a null pointer");
-  ReadPass read;
-  if (pass.profile != nullptr) read.profile = profile_of("pass.profile", pass.profile);
-  if (pass.budget != 0) read.budget = pass.budget;
-  std::vector<MemoryRange> ranges;
-  for (std::int32_t i = 0; i < pass.target_count; ++i) {
-    read.targets.emplace_back();
-    if (pass.targets[i] == nullptr) continue;
-    const std::string name = "pass.targets[" + std::to_string(i) + "]";
-    const ReadTexels texels = read_texels(name, pass.targets[i], true);
-    for (const ImageView& other : read.targets) {
-      if (other.texels != nullptr &&
-          (other.width != texels.view.width || other.height != texels.view.height)) {
-        refuse(name, "it has not the size of the others");
-      }
-    }
-    for (const MemoryRange& other : ranges) {
-      if (overlap(other, texels.range)) refuse(name, "it lies over another target");
-    }
-    ranges.push_back(texels.range);
-    read.targets.back() = texels.view;
-  }
-  if (ranges.empty()) refuse("pass.targets", "all are null");
-  return read;
+  return bound;
 }
 
 }  // namespace
@@ -282,7 +218,7 @@ int softfocus_set_uniform(softfocus_context* context, softfocus_shader* shader, 
 }
 
 int softfocus_set_texture(softfocus_context* context, softfocus_shader* shader, const char* name,
-                          const softfocus_texels* texels, int32_t filter, int32_t wrap) {
+                          const softfocus_texels* texels, const softfocus_sampler* sampler) {
   return guarded(context, [&](ThreadPool& pool) {
     softfocus_shader& to = given(shader);
     const auto [uniform, element] = named(to, name, true);
@@ -291,29 +227,14 @@ int softfocus_set_texture(softfocus_context* context, softfocus_shader* shader, 
       refuse("name", "'" + uniform.name +
                          "' is a cube or has layers; textures of two dimensions are there");
     }
-    const ImageView from = read_texels("texels", texels, false).view;
-    const auto chosen = one_of<Filter>("filter", filter,
-                                       {{SOFTFOCUS_NEAREST, Filter::nearest},
-                                        {SOFTFOCUS_BILINEAR, Filter::bilinear},
-                                        {SOFTFOCUS_TRILINEAR, Filter::trilinear}},
-                                       "SOFTFOCUS_NEAREST, BILINEAR and TRILINEAR");
-    const auto edge = one_of<Wrap>("wrap", wrap,
-                                   {{SOFTFOCUS_REPEAT, Wrap::repeat},
-                                    {SOFTFOCUS_MIRROR, Wrap::mirrored_repeat},
-                                    {SOFTFOCUS_CLAMP, Wrap::clamp_to_edge}},
-                                   "SOFTFOCUS_REPEAT, MIRROR and CLAMP");
+    const ImageView from = read_texels("texels", texels);
+    const ShaderTexture chosen = read_sampler(sampler);
     Texture made = make_texture(make_image(from.format, from.width, from.height));
-    Image& image = made.levels.front();
-    constexpr int kRowsAtOnce = 64;
-    for_each_row(pool, from.height, kRowsAtOnce, [&](int y) {
-      std::memcpy(image.bytes.data() + static_cast<std::size_t>(y) * image.stride_bytes,
-                  from.texels + y * from.stride_bytes,
-                  bytes_per_texel(from.format) * static_cast<std::size_t>(from.width));
-    });
-    if (chosen == Filter::trilinear) generate_mipmaps(made, {});
+    copy_rows(from, made.levels.front(), pool);
+    if (chosen.sampler.filter == Filter::trilinear) generate_mipmaps(made, {});
     const std::size_t number = to.shader.uniforms.words[uniform.first + element];
     to.textures[number] = std::move(made);
-    to.samplers[number] = {chosen, edge, edge};
+    to.samplers[number] = chosen;
   });
 }
 
@@ -325,16 +246,68 @@ int softfocus_run_shader(softfocus_context* context, softfocus_shader* shader,
       refuse("shader", "it is a vertex shader; a fragment shader would be right");
     }
     const ReadPass read = read_pass(pass);
-    std::vector<ShaderTexture> textures;
-    for (std::size_t i = 0; i < of.textures.size(); ++i) {
-      textures.push_back(
-          {of.textures[i].levels.empty() ? nullptr : &of.textures[i], of.samplers[i]});
-    }
-    run_shader(program_of(of),
+    const std::vector<ShaderTexture> textures = bound_textures(of);
+    run_shader(*program_of(of),
                {.textures = textures,
                 .targets = read.targets,
                 .profile = read.profile,
                 .budget = read.budget},
                pool);
+  });
+}
+
+int softfocus_link_shaders(softfocus_context* context, softfocus_shader* vertex,
+                           softfocus_shader* fragment) {
+  return guarded(context, [&](ThreadPool&) {
+    softfocus_shader &first = given(vertex), &second = given(fragment);
+    link_shaders(first.shader, second.shader);
+    first.words = first.shader.uniforms.words;
+    second.words = second.shader.uniforms.words;
+    first.is_linked = second.is_linked = true;
+    first.program.reset();
+    second.program.reset();
+  });
+}
+
+int softfocus_draw_shaders(softfocus_context* context, softfocus_shader* vertex,
+                           softfocus_shader* fragment, const softfocus_vertices* vertices,
+                           const softfocus_pass* pass) {
+  return guarded(context, [&](ThreadPool& pool) {
+    softfocus_shader &first = given(vertex), &second = given(fragment);
+    if (!first.is_linked || !second.is_linked) {
+      refuse("vertex", "the shaders are not linked; softfocus_link_shaders() comes first");
+    }
+    const ReadVertices read_from = read_vertices(vertices, *first.shader.module);
+    const ReadPass read = read_pass(pass);
+    if (read.targets.size() > kMaxColourTargets) {
+      refuse("pass.target_count", "a draw has at most " + std::to_string(kMaxColourTargets));
+    }
+    std::vector<Image> images;
+    images.reserve(read.targets.size());
+    RenderPass render;
+    render.profile = read.profile;
+    render.isa = pool.isa();
+    for (std::size_t i = 0; i < read.targets.size(); ++i) {
+      const ImageView& target = read.targets[i];
+      if (target.texels == nullptr) continue;
+      images.push_back(make_image(target.format, target.width, target.height));
+      copy_rows(upside_down(target), images.back(), pool);
+      render.targets.colour[i] = &images.back();
+    }
+    DrawState state;
+    state.cull = Cull::none;
+    state.depth.reset();
+    draw_shaders(render, state, read_from.indices, read_from.count,
+                 {.vertex = program_of(first),
+                  .fragment = program_of(second),
+                  .attributes = read_from.attributes,
+                  .vertex_textures = bound_textures(first),
+                  .fragment_textures = bound_textures(second),
+                  .budget = read.budget});
+    finish(render, pool);
+    std::size_t drawn = 0;
+    for (const ImageView& target : read.targets) {
+      if (target.texels != nullptr) copy_rows(images[drawn++], upside_down(target), pool);
+    }
   });
 }

@@ -81,6 +81,18 @@ enum softfocus_filter {
 
 enum softfocus_wrap { SOFTFOCUS_REPEAT = 1, SOFTFOCUS_MIRROR = 2, SOFTFOCUS_CLAMP = 3 };
 
+/* What a shadow sampler gives 1 for: of the reference, to the texel. */
+enum softfocus_compare {
+  SOFTFOCUS_NEVER = 1,
+  SOFTFOCUS_LESS = 2,
+  SOFTFOCUS_EQUAL = 3,
+  SOFTFOCUS_LESS_EQUAL = 4,
+  SOFTFOCUS_GREATER = 5,
+  SOFTFOCUS_NOT_EQUAL = 6,
+  SOFTFOCUS_GREATER_EQUAL = 7,
+  SOFTFOCUS_ALWAYS = 8
+};
+
 /* Threads, and the message of the last error. Calls on one context wait for each other. It does not
  * outlive fork(). */
 typedef struct softfocus_context softfocus_context;
@@ -201,6 +213,35 @@ typedef struct softfocus_texels {
   ptrdiff_t row_bytes; /* from a row to the next, of either sign; 0: without a gap */
 } softfocus_texels;
 
+/* How a texture is sampled. What is 0 is as stands in brackets. */
+typedef struct softfocus_sampler {
+  size_t struct_size; /* sizeof(softfocus_sampler) */
+  int32_t filter;     /* a softfocus_filter [SOFTFOCUS_BILINEAR] */
+  int32_t wrap_u;     /* a softfocus_wrap [SOFTFOCUS_REPEAT] */
+  int32_t wrap_v;
+  int32_t compare; /* a softfocus_compare [SOFTFOCUS_LESS_EQUAL] */
+} softfocus_sampler;
+
+/* What vertices are given at an input of a vertex shader. */
+typedef struct softfocus_attribute {
+  size_t struct_size;  /* sizeof(softfocus_attribute) */
+  const char* name;    /* of the input */
+  const void* first;   /* of vertex 0: numbers of 32 bits, floats or whole ones as the shader has
+                          them, matrices column by column */
+  size_t vertex_bytes; /* from a vertex to the next; 0: without a gap */
+  int32_t numbers;     /* of a vertex; those of a vector that are left out are 0, 0, 0, 1 */
+} softfocus_attribute;
+
+/* Triangles. */
+typedef struct softfocus_vertices {
+  size_t struct_size;                           /* sizeof(softfocus_vertices) */
+  const softfocus_attribute* const* attributes; /* inputs that are not among them are 0, 0, 0, 1 */
+  int32_t attribute_count;
+  int32_t vertex_count;
+  const uint32_t* indices; /* three a triangle; null: 0, 1, 2 and so on */
+  size_t index_count;
+} softfocus_vertices;
+
 /* Where a shader draws. */
 typedef struct softfocus_pass {
   size_t struct_size;                     /* sizeof(softfocus_pass) */
@@ -260,15 +301,27 @@ SOFTFOCUS_API const char* softfocus_uniform_name(const softfocus_shader* shader,
 SOFTFOCUS_API int softfocus_set_uniform(softfocus_context* context, softfocus_shader* shader,
                                         const char* name, const double* numbers, size_t count);
 
-/* Sets a texture: copies the texels. One that is not set reads as 0. */
+/* Sets a texture: copies the texels. One that is not set reads as 0. `sampler` may be null. */
 SOFTFOCUS_API int softfocus_set_texture(softfocus_context* context, softfocus_shader* shader,
                                         const char* name, const softfocus_texels* texels,
-                                        int32_t filter, int32_t wrap);
+                                        const softfocus_sampler* sampler);
 
 /* Runs a fragment shader at every pixel of the targets, with gl_FragCoord (x + 1/2, y + 1/2, 1/2,
  * 1); its inputs are the place: u, v from 0 to 1. What it discards stays. */
 SOFTFOCUS_API int softfocus_run_shader(softfocus_context* context, softfocus_shader* shader,
                                        const softfocus_pass* pass);
+
+/* Joins a vertex and a fragment shader: an input of the fragment shader gets the location of the
+ * output of that name. Once, before their uniforms are set. */
+SOFTFOCUS_API int softfocus_link_shaders(softfocus_context* context, softfocus_shader* vertex,
+                                         softfocus_shader* fragment);
+
+/* Draws triangles over the targets as OpenGL does: y upwards, the first row of the targets the
+ * lowest. */
+SOFTFOCUS_API int softfocus_draw_shaders(softfocus_context* context, softfocus_shader* vertex,
+                                         softfocus_shader* fragment,
+                                         const softfocus_vertices* vertices,
+                                         const softfocus_pass* pass);
 
 #ifdef __cplusplus
 }

@@ -157,6 +157,11 @@ void Lowering::add_inputs(SpirvId id, const SpirvDecorations& of) {
     return;
   }
   if (tree_.inputs.size() + what.scalars > kMostScalars) refuse("inputs have too many numbers");
+  if (is_array_of_structures(id)) {
+    for_each_structure(id, of,
+                       [&](const SpirvDecorations& with) { add_inputs(what.element, with); });
+    return;
+  }
   const bool is_integer = has_integers(what);
   add_numbers(id, of, [&](int location, int component, int part) {
     tree_.inputs.push_back(
@@ -169,6 +174,14 @@ void Lowering::add_outputs(std::uint32_t first, SpirvId id, const SpirvDecoratio
     for_each_member(id, of, [&](SpirvId member, const SpirvDecorations& with) {
       add_outputs(first, member, with);
       first += scalars(member);
+    });
+    return;
+  }
+  if (is_array_of_structures(id)) {
+    const SpirvId element = type(id).element;
+    for_each_structure(id, of, [&](const SpirvDecorations& with) {
+      add_outputs(first, element, with);
+      first += scalars(element);
     });
     return;
   }

@@ -120,6 +120,22 @@ class Lowering {
       location = member.location + locations(what.members[i]);
     }
   }
+  /// body(its decorations) for each element of an array of structures, which may be arrays of them.
+  template <class Body>
+  void for_each_structure(SpirvId id, const SpirvDecorations& of, const Body& body) {
+    const SpirvType& what = type(id);
+    SpirvDecorations element = of;
+    for (std::uint32_t i = 0; i < what.count; ++i) {
+      body(element);
+      if (element.location >= 0) element.location += locations(what.element);
+    }
+  }
+  bool is_array_of_structures(SpirvId id) const {
+    const SpirvType* what = &type(id);
+    if (what->kind != SpirvKind::array) return false;
+    while (what->kind == SpirvKind::array) what = &type(what->element);
+    return what->kind == SpirvKind::structure;
+  }
   /// add(location, component, part) for each scalar.
   template <class Add>
   void add_numbers(SpirvId id, const SpirvDecorations& of, const Add& add) {

@@ -456,6 +456,20 @@ SOFTFOCUS_INLINE Floats level_of(const LaneSample& sample, const ShaderTexture& 
          floats_of(sample.more[0], frame, vector);
 }
 
+SOFTFOCUS_INLINE Mask comparison(Compare function, Floats given, Floats stored) {
+  switch (function) {
+    case Compare::never: return (given != given) & (given == given);
+    case Compare::less: return given < stored;
+    case Compare::equal: return given == stored;
+    case Compare::less_equal: return given <= stored;
+    case Compare::greater: return given > stored;
+    case Compare::not_equal: return given != stored;
+    case Compare::greater_equal: return given >= stored;
+    case Compare::always: break;
+  }
+  return (given != given) | (given == given);
+}
+
 /// Filtered texels, by the profile's texture unit.
 void sample_texels(const LaneSample& sample, const ShaderTexture& from, LaneFrame& frame) {
   alignas(64) std::array<float, kMostSampled * kLanes> u, v, lod;
@@ -474,7 +488,8 @@ void sample_texels(const LaneSample& sample, const ShaderTexture& from, LaneFram
     for (int i = 0; i < count; ++i) {
       const RgbaLanes& colour = colours[static_cast<std::size_t>(i)];
       if (sample.compared.is_there) {
-        const Mask passes = floats_of(sample.compared, frame, first + i) <= colour.r;
+        const Mask passes =
+            comparison(from.compare, floats_of(sample.compared, frame, first + i), colour.r);
         put_result(sample, 0, frame, first + i, as_bits(select(passes, splat(1.0f), splat(0.0f))));
         continue;
       }

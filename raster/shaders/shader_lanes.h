@@ -9,6 +9,7 @@
 #include "raster/images/decoded_texture.h"
 #include "raster/images/sampler.h"
 #include "raster/lanes/isa.h"
+#include "raster/pipeline/state.h"
 #include "raster/shaders/shader_program.h"
 
 namespace softfocus {
@@ -18,6 +19,7 @@ struct ShaderTexture {
   const Texture* texture = nullptr;
   Sampler sampler{};
   const DecodedTexture* decoded = nullptr;  ///< of the pass's profile; made there if it is null
+  Compare compare = Compare::less_equal;    ///< of what is given with what is sampled
 };
 
 struct LaneFrame;

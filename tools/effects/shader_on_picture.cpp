@@ -69,11 +69,6 @@ OpenedShader open_shader(const std::string& file, GlslConvention convention) {
 
 // --- uniforms ---
 
-bool is_texture(const ShaderUniform& of) {
-  return of.kind == SpirvKind::sampled_image || of.kind == SpirvKind::image ||
-         of.kind == SpirvKind::sampler;
-}
-
 /// "NAME=VALUE" of an option.
 std::pair<std::string, std::string> split_setting(const std::string& option,
                                                   const std::string& text) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dof/c/softfocus.h"
+#include "raster/images/texel.h"
 #include "raster/shaders/glsl/glsl.h"
 #include "raster/shaders/shader.h"
 #include "tests/support/c_pictures.h"
@@ -67,6 +68,14 @@ softfocus_texels texels_of(Image& image, int format) {
   texels.first = image.bytes.data();
   texels.row_bytes = static_cast<std::ptrdiff_t>(image.stride_bytes);
   return texels;
+}
+
+softfocus_sampler sampler_of(int filter, int wrap) {
+  softfocus_sampler sampler{};
+  sampler.struct_size = sizeof sampler;
+  sampler.filter = filter;
+  sampler.wrap_u = sampler.wrap_v = wrap;
+  return sampler;
 }
 
 struct Pass {
@@ -136,8 +145,9 @@ TEST_CASE("the C interface: a shader, as text or as words, gives run_shader()'s 
     CHECK(set(context.get(), shader, "weights", {0.25, 7.0, 7.0}) == SOFTFOCUS_OK);
     CHECK(set(context.get(), shader, "weights[1]", {0.5, 0.125}) == SOFTFOCUS_OK);
     const softfocus_texels from = texels_of(picture, SOFTFOCUS_FORMAT_RGBA16F);
-    CHECK(softfocus_set_texture(context.get(), shader.get(), "picture", &from, SOFTFOCUS_BILINEAR,
-                                SOFTFOCUS_MIRROR) == SOFTFOCUS_OK);
+    const softfocus_sampler mirrored = sampler_of(SOFTFOCUS_BILINEAR, SOFTFOCUS_MIRROR);
+    CHECK(softfocus_set_texture(context.get(), shader.get(), "picture", &from, &mirrored) ==
+          SOFTFOCUS_OK);
     for (const char* profile : {"ieee", "llvmpipe"}) {
       CAPTURE(profile);
       Image sums = make_image(Format::rgba16f, kWidth, kHeight);
@@ -217,8 +227,9 @@ TEST_CASE("the C interface: whole numbers pass through textures and targets as t
   texels.width = texels.height = 1;
   texels.format = SOFTFOCUS_FORMAT_RGBA32I;
   texels.first = numbers.data();
-  CHECK(softfocus_set_texture(context.get(), shader.get(), "numbers", &texels, SOFTFOCUS_NEAREST,
-                              SOFTFOCUS_CLAMP) == SOFTFOCUS_OK);
+  const softfocus_sampler nearest = sampler_of(SOFTFOCUS_NEAREST, SOFTFOCUS_CLAMP);
+  CHECK(softfocus_set_texture(context.get(), shader.get(), "numbers", &texels, &nearest) ==
+        SOFTFOCUS_OK);
   const auto found = pixel_of<std::int32_t>(context.get(), shader, SOFTFOCUS_FORMAT_RGBA32I);
   CHECK(found[0] == -1);
   CHECK(found[1] == INT32_MIN);
@@ -251,6 +262,203 @@ TEST_CASE("the C interface: a shader's errors name its file and line") {
   pass.pass.budget = 100;
   CHECK(softfocus_run_shader(context.get(), endless.get(), &pass.pass) == SOFTFOCUS_BAD_SHADER);
   CHECK(std::string{softfocus_message(context.get())}.starts_with("mine.frag:5: a loop"));
+}
+
+namespace {
+
+softfocus_shader_source vertex_source(const char* text) {
+  softfocus_shader_source source = text_source(text);
+  source.stage = SOFTFOCUS_VERTEX;
+  source.name = "mine.vert";
+  return source;
+}
+
+constexpr const char* kCorner =
+    "#version 330\n"
+    "in vec2 corner;\n"
+    "in mat2 more;\n"
+    "uniform vec4 tint = vec4(0.25, 0.5, 0.75, 1.0);\n"
+    "out float row;\n"
+    "void main() {\n"
+    "  gl_Position = vec4(corner, 0.0, 1.0);\n"
+    "  row = more[1].y;\n"
+    "}\n";
+
+}  // namespace
+
+TEST_CASE("the C interface: a vertex and a fragment shader draw triangles, the lowest row first") {
+  if (is_glsl_missing()) return;
+  const Context context = open_context(1);
+  const Shader vertex = compiled_in_c(context.get(), vertex_source(kCorner));
+  const Shader fragment =
+      compiled_in_c(context.get(), text_source("#version 330\n"
+                                               "in float row;\n"
+                                               "uniform vec4 tint;\n"
+                                               "out vec4 colour;\n"
+                                               "void main() {\n"
+                                               "  colour = vec4(row, gl_FragCoord.y, tint.zw);\n"
+                                               "}\n"));
+  REQUIRE(vertex != nullptr);
+  REQUIRE(fragment != nullptr);
+  // A rectangle over the lower half; of its matrices the last number is 0 below and 8 above.
+  const float corners[4][2] = {{-1, -1}, {1, -1}, {-1, 0}, {1, 0}};
+  const float matrices[4][4] = {{0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 8}, {0, 0, 0, 8}};
+  const std::uint32_t indices[6] = {0, 1, 2, 2, 1, 3};
+  softfocus_attribute corner{}, more{};
+  corner.struct_size = more.struct_size = sizeof corner;
+  corner.name = "corner";
+  corner.first = corners;
+  corner.numbers = 2;
+  more.name = "more";
+  more.first = matrices;
+  more.numbers = 4;
+  const softfocus_attribute* const attributes[] = {&corner, &more};
+  softfocus_vertices vertices{};
+  vertices.struct_size = sizeof vertices;
+  vertices.attributes = attributes;
+  vertices.attribute_count = 2;
+  vertices.vertex_count = 4;
+  vertices.indices = indices;
+  vertices.index_count = 6;
+  Image image = make_image(Format::rgba32f, 3, 4);
+  clear_image(image, {-1, -1, -1, -1}, {});
+  const softfocus_texels texels = texels_of(image, SOFTFOCUS_FORMAT_RGBA32F);
+  const Pass pass{{&texels}};
+  const auto draw = [&] {
+    return softfocus_draw_shaders(context.get(), vertex.get(), fragment.get(), &vertices,
+                                  &pass.pass);
+  };
+  CHECK(draw() == SOFTFOCUS_BAD_ARGUMENT);
+  CHECK(softfocus_message(context.get()) ==
+        std::string{"vertex: the shaders are not linked; softfocus_link_shaders() comes first"});
+  REQUIRE(softfocus_link_shaders(context.get(), vertex.get(), fragment.get()) == SOFTFOCUS_OK);
+  REQUIRE(draw() == SOFTFOCUS_OK);
+  for (int x = 0; x < 3; ++x) {
+    // The vertex shader's initial value is the fragment shader's.
+    CHECK(load_texel(image, x, 0) == glm::vec4{2.0f, 0.5f, 0.75f, 1.0f});
+    CHECK(load_texel(image, x, 1) == glm::vec4{6.0f, 1.5f, 0.75f, 1.0f});
+    CHECK(load_texel(image, x, 2) == glm::vec4{-1.0f});
+    CHECK(load_texel(image, x, 3) == glm::vec4{-1.0f});
+  }
+  const auto refused = [&](const std::string& words) {
+    CHECK(draw() == SOFTFOCUS_BAD_ARGUMENT);
+    const std::string message = softfocus_message(context.get());
+    CAPTURE(message);
+    CHECK(message.find(words) != message.npos);
+  };
+  more.numbers = 3;
+  refused("vertices.attributes[1].numbers: 3; 'more' has 4");
+  more.name = "less";
+  refused("vertices.attributes[1].name: the vertex shader has no input 'less'; there are ");
+  more.name = "more";
+  more.numbers = 4;
+  vertices.index_count = 5;
+  refused("vertices.index_count: 5; a triangle has three");
+  vertices.index_count = 6;
+  vertices.vertex_count = 3;
+  refused("vertices.indices[5]: 3; there are 3 vertices");
+}
+
+TEST_CASE("the C interface: an array of structures goes from vertices to pixels member by member") {
+  if (is_glsl_missing()) return;
+  const Context context = open_context(1);
+  const Shader vertex = compiled_in_c(
+      context.get(), vertex_source("#version 330\n"
+                                   "struct Part { vec3 a; vec2 b; };\n"
+                                   "out Part parts[2];\n"
+                                   "in vec2 corner;\n"
+                                   "void main() {\n"
+                                   "  gl_Position = vec4(corner, 0.0, 1.0);\n"
+                                   "  for (int i = 0; i < 2; ++i) {\n"
+                                   "    parts[i].a = vec3(1.0, 2.0, 3.0) + 8.0 * float(i);\n"
+                                   "    parts[i].b = vec2(4.0, 5.0) + 8.0 * float(i);\n"
+                                   "  }\n"
+                                   "}\n"));
+  const Shader fragment =
+      compiled_in_c(context.get(), text_source("#version 330\n"
+                                               "struct Part { vec3 a; vec2 b; };\n"
+                                               "in Part parts[2];\n"
+                                               "out vec4 colour;\n"
+                                               "void main() { colour = vec4(parts[0].a.z, "
+                                               "parts[0].b.y, parts[1].a.x, parts[1].b.y); }\n"));
+  REQUIRE(softfocus_link_shaders(context.get(), vertex.get(), fragment.get()) == SOFTFOCUS_OK);
+  const float corners[3][2] = {{-1, -1}, {3, -1}, {-1, 3}};
+  softfocus_attribute corner{};
+  corner.struct_size = sizeof corner;
+  corner.name = "corner";
+  corner.first = corners;
+  corner.numbers = 2;
+  const softfocus_attribute* const attributes[] = {&corner};
+  softfocus_vertices vertices{};
+  vertices.struct_size = sizeof vertices;
+  vertices.attributes = attributes;
+  vertices.attribute_count = 1;
+  vertices.vertex_count = 3;
+  Image image = make_image(Format::rgba32f, 1, 1);
+  const softfocus_texels texels = texels_of(image, SOFTFOCUS_FORMAT_RGBA32F);
+  const Pass pass{{&texels}};
+  REQUIRE(softfocus_draw_shaders(context.get(), vertex.get(), fragment.get(), &vertices,
+                                 &pass.pass) == SOFTFOCUS_OK);
+  CHECK(load_texel(image, 0, 0) == glm::vec4{3.0f, 5.0f, 9.0f, 13.0f});
+}
+
+TEST_CASE("the C interface: shaders that exchange what the other has not do not link") {
+  if (is_glsl_missing()) return;
+  const Context context = open_context(1);
+  const auto message_of = [&](const char* declared, const char* value) {
+    const std::string text = std::string{"#version 330\n"} + declared +
+                             "\nout vec4 colour;\nvoid main() { colour = vec4(" + value + "); }\n";
+    const Shader vertex = compiled_in_c(context.get(), vertex_source(kCorner));
+    const Shader fragment = compiled_in_c(context.get(), text_source(text.c_str()));
+    CHECK(softfocus_link_shaders(context.get(), vertex.get(), fragment.get()) ==
+          SOFTFOCUS_BAD_SHADER);
+    return std::string{softfocus_message(context.get())};
+  };
+  CHECK(message_of("in vec2 row;", "row, row").find("'row' has 1 floats in the vertex shader") !=
+        std::string::npos);
+  CHECK(message_of("in float column;", "column").find("has no output 'column'") !=
+        std::string::npos);
+  CHECK(message_of("uniform vec3 tint;", "tint, 1.0") ==
+        "'tint' has another type in the vertex shader than in the fragment shader; they "
+        "must be equal");
+}
+
+TEST_CASE("the C interface: a shadow sampler compares as it is told") {
+  if (is_glsl_missing()) return;
+  const Context context = open_context(1);
+  const Shader shader = compiled_in_c(
+      context.get(),
+      text_source("#version 330\n"
+                  "uniform sampler2DShadow depths;\n"
+                  "uniform float z;\n"
+                  "out vec4 colour;\n"
+                  "void main() {\n"
+                  "  colour = vec4(texture(depths, vec3(0.5, 0.5, z)),\n"
+                  "                vec3(textureLod(depths, vec3(0.5, 0.5, z), 0.0)));\n"
+                  "}\n"));
+  REQUIRE(shader != nullptr);
+  float depth = 0.5f;
+  softfocus_texels texels{};
+  texels.struct_size = sizeof texels;
+  texels.width = texels.height = 1;
+  texels.format = SOFTFOCUS_FORMAT_R32F;
+  texels.first = &depth;
+  softfocus_sampler sampler = sampler_of(SOFTFOCUS_NEAREST, SOFTFOCUS_CLAMP);
+  const bool expected[8][3] = {{false, false, false}, {true, false, false}, {false, true, false},
+                               {true, true, false},   {false, false, true}, {true, false, true},
+                               {false, true, true},   {true, true, true}};
+  for (int compare = SOFTFOCUS_NEVER; compare <= SOFTFOCUS_ALWAYS; ++compare) {
+    CAPTURE(compare);
+    sampler.compare = compare;
+    REQUIRE(softfocus_set_texture(context.get(), shader.get(), "depths", &texels, &sampler) ==
+            SOFTFOCUS_OK);
+    for (int i = 0; i < 3; ++i) {
+      CHECK(set(context.get(), shader, "z", {0.25 * (i + 1)}) == SOFTFOCUS_OK);
+      const float passes = expected[compare - 1][i] ? 1.0f : 0.0f;
+      CHECK(pixel_of<float>(context.get(), shader, SOFTFOCUS_FORMAT_RGBA32F) ==
+            std::array<float, 4>{passes, passes, passes, passes});
+    }
+  }
 }
 
 TEST_CASE("the C interface: wrong arguments of shaders are refused by name") {
@@ -298,14 +506,15 @@ TEST_CASE("the C interface: wrong arguments of shaders are refused by name") {
 
   Image image = make_image(Format::rgba16f, 8, 4), other = image;
   softfocus_texels texels = texels_of(image, SOFTFOCUS_FORMAT_RGBA16F);
-  status = softfocus_set_texture(context.get(), shader.get(), "picture", &texels, 9, 1);
-  is_refused("filter: 9 is none");
+  const softfocus_sampler sampler = sampler_of(9, SOFTFOCUS_CLAMP);
+  status = softfocus_set_texture(context.get(), shader.get(), "picture", &texels, &sampler);
+  is_refused("sampler.filter: 9 is none");
   texels.format = 0;
-  status = softfocus_set_texture(context.get(), shader.get(), "picture", &texels, 1, 1);
+  status = softfocus_set_texture(context.get(), shader.get(), "picture", &texels, nullptr);
   is_refused("texels.format: 0 is no softfocus_format");
   texels.format = SOFTFOCUS_FORMAT_RGBA16F;
   texels.first = image.bytes.data() + 1;
-  status = softfocus_set_texture(context.get(), shader.get(), "picture", &texels, 1, 1);
+  status = softfocus_set_texture(context.get(), shader.get(), "picture", &texels, nullptr);
   is_refused("texels.first: it or row_bytes is not aligned to 2 bytes");
 
   source = text_source(
@@ -313,7 +522,7 @@ TEST_CASE("the C interface: wrong arguments of shaders are refused by name") {
       "void main() { c = texture(sky, vec3(1.0)); }\n");
   const Shader cube = compiled_in_c(context.get(), source);
   texels = texels_of(image, SOFTFOCUS_FORMAT_RGBA16F);
-  status = softfocus_set_texture(context.get(), cube.get(), "sky", &texels, 1, 1);
+  status = softfocus_set_texture(context.get(), cube.get(), "sky", &texels, nullptr);
   is_refused("name: 'sky' is a cube or has layers");
 
   const softfocus_texels first = texels_of(image, SOFTFOCUS_FORMAT_RGBA16F);
@@ -333,9 +542,7 @@ TEST_CASE("the C interface: wrong arguments of shaders are refused by name") {
   pass.pass.profile = "gpu";
   refused_pass(pass, "pass.profile: there is no 'gpu'");
 
-  source = text_source("#version 330\nvoid main() { gl_Position = vec4(0.0); }\n");
-  source.stage = SOFTFOCUS_VERTEX;
-  const Shader vertex = compiled_in_c(context.get(), source);
+  const Shader vertex = compiled_in_c(context.get(), vertex_source(kCorner));
   const Pass good{{&first}};
   status = softfocus_run_shader(context.get(), vertex.get(), &good.pass);
   is_refused("shader: it is a vertex shader");
