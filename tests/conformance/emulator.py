@@ -272,6 +272,9 @@ class Results:
         if outcome == "failed":
             self.failures.append((path, reason))
 
+    def reason(self, path):
+        return next((reason for part, reason in self.known.items() if part in path), None)
+
     def tell(self):
         """Prints all; whether each failure is a known one."""
         rows = [("", "cases", "applicable", "passed", "failed")]
@@ -286,12 +289,12 @@ class Results:
                 reasons[reason] = reasons.get(reason, 0) + count
         rows.append(("all", *total))
         for path, reason in self.failures:
-            mark = "known: " if path in self.known else ""
-            print(f"failed: {path}: {mark}{reason}")
+            known = self.reason(path)
+            print(f"failed: {path}: {reason}" + (f" (known: {known})" if known else ""))
         for name, *counts in rows:
             print(f"{name:<44}" + "".join(f"{count:>12}" for count in counts))
         for reason, count in sorted(reasons.items(), key=lambda item: -item[1]):
             print(f"not applicable: {count} {reason}")
         if total[1]:
             print(f"{100 * total[2] / total[1]:.2f} % of the applicable cases pass")
-        return all(path in self.known for path, _ in self.failures)
+        return all(self.reason(path) for path, _ in self.failures)

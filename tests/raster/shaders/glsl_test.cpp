@@ -421,10 +421,6 @@ TEST_CASE("threads compile at once, each to the same words" * doctest::test_suit
 TEST_CASE("what drivers take and old versions do not say: suffixes, constants by newer functions") {
   if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
   CHECK(error_of_text("#version 110\nvoid main() { gl_FragColor = vec4(0.5f); }\n") == "none");
-  CHECK(
-      error_of_text(
-          "#version 100\nprecision mediump float;\nvoid main() { gl_FragColor = vec4(0.5f); }\n") ==
-      "none");
   CHECK(error_of_text("#version 120\n"
                       "void main() {\n"
                       "  const mat2 m = transpose(mat2(1.0, 2.0, 3.0, 4.0));\n"
