@@ -106,7 +106,10 @@ std::vector<VertexAttribute> read_attributes(const softfocus_vertices& vertices,
     });
     if (input == inputs.end()) {
       std::string all;
-      for (const ShaderPort& port : inputs) all = all.empty() ? port.name : all + ", " + port.name;
+      for (const ShaderPort& port : inputs) {
+        if (!all.empty()) all += ", ";
+        all += port.name;
+      }
       refuse(argument + ".name", "the vertex shader has no input '" + std::string{attribute.name} +
                                      "'; there " + (all.empty() ? "is none" : "are " + all));
     }
