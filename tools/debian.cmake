@@ -59,7 +59,7 @@ debian_package(libsoftfocus-dev libsoftfocus-dev libdevel
   "field, the software GPU under it, and measures of pictures.")
 set(CPACK_DEBIAN_LIBSOFTFOCUS-DEV_PACKAGE_DEPENDS
     "libsoftfocus${PROJECT_VERSION_MAJOR} (= ${version}), libglm-dev")
-set(CPACK_DEBIAN_LIBSOFTFOCUS-DEV_PACKAGE_SUGGESTS "libembree-dev, glslang-dev, pkgconf")
+set(CPACK_DEBIAN_LIBSOFTFOCUS-DEV_PACKAGE_SUGGESTS "glslang-dev, libembree-dev, pkgconf")
 
 file(WRITE ${PROJECT_BINARY_DIR}/debian/triggers "activate-noawait ldconfig\n")
 set(CPACK_DEBIAN_LIBSOFTFOCUS_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/debian/triggers)

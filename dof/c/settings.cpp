@@ -145,18 +145,18 @@ const Method* method_of(const char* name) {
   return method;
 }
 
-Profile profile_of(const char* name) {
-  if (name == nullptr) refuse("settings.profile", "a null pointer");
+}  // namespace
+
+Profile profile_of(const std::string& argument, const char* name) {
+  if (name == nullptr) refuse(argument, "a null pointer");
   const auto profile = find_profile(name);
   if (!profile) {
     std::string all;
     for (const NamedProfile& one : profiles()) all = listed(all, one.name);
-    refuse("settings.profile", "there is no '" + std::string{name} + "'; there are " + all);
+    refuse(argument, "there is no '" + std::string{name} + "'; there are " + all);
   }
   return *profile;
 }
-
-}  // namespace
 
 softfocus_settings default_settings() {
   return {.struct_size = sizeof(softfocus_settings),
@@ -180,7 +180,7 @@ ReadSettings read_settings(const softfocus_settings* given, int width_px, int he
   const auto settings = read_struct("settings", given, default_settings());
   ReadSettings read;
   read.method = method_of(settings.method);
-  read.profile = profile_of(settings.profile);
+  read.profile = profile_of("settings.profile", settings.profile);
   read.dof.coc = coc_of(settings, width_px, height_px);
   read.dof.leak = static_cast<float>(checked(parameter::kLeak, settings.leak));
   read.dof.budget = static_cast<float>(checked(parameter::kBudget, settings.budget));

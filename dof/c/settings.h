@@ -70,6 +70,9 @@ struct ReadSettings {
   Profile profile;
 };
 
+/// The profile of that name. Throws BadArgument.
+Profile profile_of(const std::string& argument, const char* name);
+
 /// What softfocus_init_settings() gives.
 softfocus_settings default_settings();
 

@@ -1,27 +1,18 @@
-// The functions of softfocus.h: every argument is checked, no exception leaves.
+// The functions of softfocus.h on pictures: every argument is checked, no exception leaves.
 
 #include "dof/c/softfocus.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <mutex>
 #include <new>
 
 #include "dof/auto/auto_method.h"
+#include "dof/c/context.h"
 #include "dof/c/pictures.h"
 #include "dof/c/settings.h"
 #include "dof/lens.h"
-#include "raster/threads/float_environment.h"
 
 using namespace softfocus;
-
-struct softfocus_context {
-  explicit softfocus_context(int threads) : pool(threads) {}
-  std::mutex one_call;
-  ThreadPool pool;
-  std::array<char, 512> message{};  // no memory is needed to say that there is none
-};
 
 static_assert(SOFTFOCUS_LARGEST_SIZE == kMaxImageSize);
 static_assert(SOFTFOCUS_LARGEST_RADIUS == kLargestMaxCoc);
@@ -102,38 +93,6 @@ std::size_t report_bytes(const softfocus_report* report) {
   if (report == nullptr) return 0;
   // The struct's contents do not matter: it is written.
   return struct_bytes("report", report, sizeof *report, SIZE_MAX);
-}
-
-void put_message(softfocus_context& context, const char* text) {
-  const std::size_t length = std::min(std::strlen(text), context.message.size() - 1);
-  std::copy_n(text, length, context.message.data());
-  context.message[length] = '\0';
-}
-
-/// Runs a call's work; what it throws becomes a code and a message.
-template <class Call>
-int guarded(softfocus_context* context, const Call& call) {
-  if (context == nullptr) return SOFTFOCUS_BAD_ARGUMENT;
-  try {
-    const std::lock_guard lock{context->one_call};
-    try {
-      const DefaultFloatEnvironment environment;
-      put_message(*context, "");
-      call(context->pool);
-      return SOFTFOCUS_OK;
-    } catch (const BadArgument& error) {
-      put_message(*context, error.what());
-      return SOFTFOCUS_BAD_ARGUMENT;
-    } catch (const std::bad_alloc&) {
-      put_message(*context, "there is not enough memory");
-      return SOFTFOCUS_NO_MEMORY;
-    } catch (const std::exception& error) {
-      put_message(*context, error.what());
-      return SOFTFOCUS_FAILED;
-    }
-  } catch (...) {
-    return SOFTFOCUS_FAILED;
-  }
 }
 
 template <class Named>

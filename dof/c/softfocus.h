@@ -1,8 +1,9 @@
 #ifndef SOFTFOCUS_H
 #define SOFTFOCUS_H
-/* Depth of field on pictures with depth, for C and for languages that call C. The bits of a result
- * are those of apply() in dof/dof.h: they depend on the input alone, not on threads, processor or
- * compiler. docs/embedding.md has examples in C and Python.
+/* Depth of field on pictures with depth, and shaders on the emulated GPU, for C and for languages
+ * that call C. The bits of a result are those of apply() in dof/dof.h and of run_shader() in
+ * raster/shaders/shader.h: they depend on the input alone, not on threads, processor or compiler.
+ * docs/embedding.md has examples in C and Python.
  *
  *   softfocus_context* context;
  *   if (softfocus_open(&context, 0) != SOFTFOCUS_OK) return 1;
@@ -39,13 +40,15 @@ extern "C" {
 #define SOFTFOCUS_MOST_THREADS 256
 #define SOFTFOCUS_MOST_BEHIND 3      /* layers behind the first */
 #define SOFTFOCUS_MOST_TRANSPARENT 4 /* layers before it */
+#define SOFTFOCUS_MOST_TARGETS 8     /* of a shader */
 
 /* What functions return. */
 enum softfocus_status {
   SOFTFOCUS_OK = 0,
   SOFTFOCUS_BAD_ARGUMENT = 1, /* nothing was written; softfocus_message() says what is wrong */
   SOFTFOCUS_NO_MEMORY = 2,    /* the target may be written in part */
-  SOFTFOCUS_FAILED = 3        /* likewise; a bug in the library */
+  SOFTFOCUS_FAILED = 3,       /* likewise; a bug in the library */
+  SOFTFOCUS_BAD_SHADER = 4    /* likewise; the message names the shader's file and line */
 };
 
 /* How a number is stored. */
@@ -54,6 +57,40 @@ enum softfocus_type {
   SOFTFOCUS_FLOAT = 2,  /* binary32 */
   SOFTFOCUS_UNORM8 = 3, /* 0 to 255 for 0 to 1, linear */
   SOFTFOCUS_SRGB8 = 4   /* 0 to 255 along the sRGB curve */
+};
+
+enum softfocus_stage { SOFTFOCUS_FRAGMENT = 1, SOFTFOCUS_VERTEX = 2 };
+
+/* Texels of textures and targets. */
+enum softfocus_format {
+  SOFTFOCUS_FORMAT_R8 = 1,      /* 8-bit unsigned normalised */
+  SOFTFOCUS_FORMAT_RGBA8 = 2,   /* likewise */
+  SOFTFOCUS_FORMAT_SRGB8 = 3,   /* 8-bit sRGB, and a linear alpha */
+  SOFTFOCUS_FORMAT_RGBA16F = 4, /* binary16 */
+  SOFTFOCUS_FORMAT_R32F = 5,    /* binary32 */
+  SOFTFOCUS_FORMAT_RGBA32F = 6, /* likewise */
+  SOFTFOCUS_FORMAT_RGBA32I = 7, /* for ivec4 */
+  SOFTFOCUS_FORMAT_RGBA32UI = 8 /* for uvec4 */
+};
+
+enum softfocus_filter {
+  SOFTFOCUS_NEAREST = 1,
+  SOFTFOCUS_BILINEAR = 2,
+  SOFTFOCUS_TRILINEAR = 3 /* smaller levels are made */
+};
+
+enum softfocus_wrap { SOFTFOCUS_REPEAT = 1, SOFTFOCUS_MIRROR = 2, SOFTFOCUS_CLAMP = 3 };
+
+/* What a shadow sampler gives 1 for: of the reference, to the texel. */
+enum softfocus_compare {
+  SOFTFOCUS_NEVER = 1,
+  SOFTFOCUS_LESS = 2,
+  SOFTFOCUS_EQUAL = 3,
+  SOFTFOCUS_LESS_EQUAL = 4,
+  SOFTFOCUS_GREATER = 5,
+  SOFTFOCUS_NOT_EQUAL = 6,
+  SOFTFOCUS_GREATER_EQUAL = 7,
+  SOFTFOCUS_ALWAYS = 8
 };
 
 /* Threads, and the message of the last error. Calls on one context wait for each other. It does not
@@ -147,6 +184,73 @@ typedef struct softfocus_report {
   double predicted_error;       /* of auto, mean FLIP; else 0 */
 } softfocus_report;
 
+/* --- shaders (docs/shaders.md) --- */
+
+/* What a shader is compiled from: a text or words. */
+typedef struct softfocus_shader_source {
+  size_t struct_size;    /* sizeof(softfocus_shader_source) */
+  int32_t stage;         /* of a text, a softfocus_stage */
+  const char* text;      /* GLSL, UTF-8; or null */
+  const uint32_t* words; /* SPIR-V; or null */
+  size_t word_count;
+  const char* name;       /* for messages; null: "shader" */
+  const char* convention; /* "plain", "shadertoy", "three", "libretro" or "gl-transitions"; null:
+                             recognised by the text */
+} softfocus_shader_source;
+
+/* A compiled shader with the uniforms and textures that were set. One thread at a time may use it.
+ * It may outlive its context. */
+typedef struct softfocus_shader softfocus_shader;
+
+/* Rows of texels in the caller's memory, the first with v = 0 and the smallest gl_FragCoord.y.
+ * Aligned to a channel. */
+typedef struct softfocus_texels {
+  size_t struct_size; /* sizeof(softfocus_texels) */
+  int32_t width;      /* texels */
+  int32_t height;
+  int32_t format; /* a softfocus_format */
+  void* first;
+  ptrdiff_t row_bytes; /* from a row to the next, of either sign; 0: without a gap */
+} softfocus_texels;
+
+/* How a texture is sampled. What is 0 is as stands in brackets. */
+typedef struct softfocus_sampler {
+  size_t struct_size; /* sizeof(softfocus_sampler) */
+  int32_t filter;     /* a softfocus_filter [SOFTFOCUS_BILINEAR] */
+  int32_t wrap_u;     /* a softfocus_wrap [SOFTFOCUS_REPEAT] */
+  int32_t wrap_v;
+  int32_t compare; /* a softfocus_compare [SOFTFOCUS_LESS_EQUAL] */
+} softfocus_sampler;
+
+/* What vertices are given at an input of a vertex shader. */
+typedef struct softfocus_attribute {
+  size_t struct_size;  /* sizeof(softfocus_attribute) */
+  const char* name;    /* of the input */
+  const void* first;   /* of vertex 0: numbers of 32 bits, floats or whole ones as the shader has
+                          them, matrices column by column */
+  size_t vertex_bytes; /* from a vertex to the next; 0: without a gap */
+  int32_t numbers;     /* of a vertex; those of a vector that are left out are 0, 0, 0, 1 */
+} softfocus_attribute;
+
+/* Triangles. */
+typedef struct softfocus_vertices {
+  size_t struct_size;                           /* sizeof(softfocus_vertices) */
+  const softfocus_attribute* const* attributes; /* inputs that are not among them are 0, 0, 0, 1 */
+  int32_t attribute_count;
+  int32_t vertex_count;
+  const uint32_t* indices; /* three a triangle; null: 0, 1, 2 and so on */
+  size_t index_count;
+} softfocus_vertices;
+
+/* Where a shader draws. */
+typedef struct softfocus_pass {
+  size_t struct_size;                     /* sizeof(softfocus_pass) */
+  const softfocus_texels* const* targets; /* by location, null where there is none; of one size */
+  int32_t target_count;                   /* 1 to SOFTFOCUS_MOST_TARGETS */
+  const char* profile; /* arithmetic, of softfocus_profile_name(); null: "ieee" */
+  uint64_t budget;     /* turns of loops that a batch of pixels may take; 0: 16777216 */
+} softfocus_pass;
+
 /* The library's, "0.1.0". */
 SOFTFOCUS_API const char* softfocus_version(void);
 
@@ -177,6 +281,47 @@ SOFTFOCUS_API int softfocus_refocus(softfocus_context* context, const softfocus_
 /* What softfocus_refocus() would use: checks everything and filters nothing. */
 SOFTFOCUS_API int softfocus_plan(softfocus_context* context, const softfocus_picture* picture,
                                  const softfocus_settings* settings, softfocus_report* report);
+
+/* Compiles a shader, once for many runs. It is null if the call fails. Of GLSL that needs #include
+ * "FILE" nothing is read: hand over the whole text. */
+SOFTFOCUS_API int softfocus_compile_shader(softfocus_context* context,
+                                           const softfocus_shader_source* source,
+                                           softfocus_shader** shader);
+
+/* Frees a shader; a null one is none. */
+SOFTFOCUS_API void softfocus_free_shader(softfocus_shader* shader);
+
+/* A shader's uniforms by number, from 0, textures among them; null past the last. Members are
+ * "light.colour", "lights[1].colour". */
+SOFTFOCUS_API const char* softfocus_uniform_name(const softfocus_shader* shader, size_t index);
+
+/* Sets a uniform: `count` numbers, whatever its type; matrices column by column, arrays element by
+ * element; "name[2]": from that element on. What is not set is 0, or what the shader says. The next
+ * run compiles the uniforms into the program, in some milliseconds. */
+SOFTFOCUS_API int softfocus_set_uniform(softfocus_context* context, softfocus_shader* shader,
+                                        const char* name, const double* numbers, size_t count);
+
+/* Sets a texture: copies the texels. One that is not set reads as 0. `sampler` may be null. */
+SOFTFOCUS_API int softfocus_set_texture(softfocus_context* context, softfocus_shader* shader,
+                                        const char* name, const softfocus_texels* texels,
+                                        const softfocus_sampler* sampler);
+
+/* Runs a fragment shader at every pixel of the targets, with gl_FragCoord (x + 1/2, y + 1/2, 1/2,
+ * 1); its inputs are the place: u, v from 0 to 1. What it discards stays. */
+SOFTFOCUS_API int softfocus_run_shader(softfocus_context* context, softfocus_shader* shader,
+                                       const softfocus_pass* pass);
+
+/* Joins a vertex and a fragment shader: an input of the fragment shader gets the location of the
+ * output of that name. Once, before their uniforms are set. */
+SOFTFOCUS_API int softfocus_link_shaders(softfocus_context* context, softfocus_shader* vertex,
+                                         softfocus_shader* fragment);
+
+/* Draws triangles over the targets as OpenGL does: y upwards, the first row of the targets the
+ * lowest. */
+SOFTFOCUS_API int softfocus_draw_shaders(softfocus_context* context, softfocus_shader* vertex,
+                                         softfocus_shader* fragment,
+                                         const softfocus_vertices* vertices,
+                                         const softfocus_pass* pass);
 
 #ifdef __cplusplus
 }

@@ -103,23 +103,9 @@ std::shared_ptr<const ShaderProgram> program_of(const Pipeline& pipeline, std::s
 
 // --- textures ---
 
-/// Which of the shader's textures it reads.
-std::vector<bool> used_textures(const PipelinePass& pass, const ShaderProgram& program) {
-  std::vector<bool> used(pass.shader.uniforms.texture_count);
-  for (const ShaderSampleRegisters& sample : program.samples) {
-    for (const ShaderProgram::Constant& constant : program.constants) {
-      if (!sample.texture.varies && constant.number == sample.texture.number &&
-          constant.bits < used.size()) {
-        used[constant.bits] = true;
-      }
-    }
-  }
-  return used;
-}
-
 void bind_rest(Pipeline& pipeline, PipelinePass& pass, const ShaderProgram& program,
                std::string_view how_to_name) {
-  const std::vector<bool> used = used_textures(pass, program);
+  const std::vector<bool> used = sampled_textures(program, pass.shader.uniforms.texture_count);
   std::string left;
   for (const ShaderUniform& of : pass.shader.uniforms.all) {
     if (of.kind != SpirvKind::sampled_image) continue;

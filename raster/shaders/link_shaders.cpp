@@ -1,6 +1,7 @@
 #include "raster/shaders/link_shaders.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 namespace softfocus {
@@ -149,6 +150,114 @@ std::string named(const ShaderPort& port) {
   throw ShaderError(why);
 }
 
+/// Types of two modules. Outside of blocks arrays may have other lengths: one that the shader does
+/// not say is what it uses.
+struct TypePair {
+  const SpirvModule &ours, &theirs;
+  bool of_block = false;
+
+  bool is_same(SpirvId our, SpirvId their) const {
+    const SpirvType &a = ours.type(our), &b = theirs.type(their);
+    if (a.kind != b.kind || a.is_signed != b.is_signed || a.dim != b.dim ||
+        a.is_arrayed != b.is_arrayed || a.is_shadow != b.is_shadow ||
+        ((of_block || a.kind != SpirvKind::array) && a.count != b.count) ||
+        a.members.size() != b.members.size() || (a.element == 0) != (b.element == 0)) {
+      return false;
+    }
+    for (std::size_t i = 0; i < a.members.size(); ++i) {
+      if (name_of(ours, our, i) != name_of(theirs, their, i) ||
+          !is_same(a.members[i], b.members[i])) {
+        return false;
+      }
+    }
+    return a.element == 0 || is_same(a.element, b.element);
+  }
+
+  static std::string name_of(const SpirvModule& module, SpirvId type, std::size_t member) {
+    const auto found = module.decorations.find(type);
+    if (found == module.decorations.end() || member >= found->second.members.size()) return {};
+    return found->second.members[member].name;
+  }
+};
+
+struct NamedVariable {
+  std::string name{};  ///< of a block its own, not its instance's
+  SpirvId type = 0;
+  bool is_block = false;
+};
+
+template <class IsWanted>
+std::vector<NamedVariable> variables_of(const SpirvModule& module, const IsWanted& is_wanted) {
+  const auto find = [&](SpirvId id) {
+    const auto found = module.decorations.find(id);
+    return found == module.decorations.end() ? nullptr : &found->second;
+  };
+  std::vector<NamedVariable> made;
+  for (const auto& [id, variable] : module.variables) {
+    if (!is_wanted(variable.storage)) continue;
+    const SpirvId type = module.type(variable.type).element;
+    SpirvId inner = type;
+    while (module.type(inner).kind == SpirvKind::array) inner = module.type(inner).element;
+    const SpirvDecorations *of_type = find(inner), *of = find(id);
+    const bool is_block = of_type != nullptr && of_type->is_block;
+    const SpirvDecorations* named = is_block ? of_type : of;
+    if (named != nullptr && !named->name.empty()) {
+      made.push_back({named->name, type, is_block});
+    }
+  }
+  return made;
+}
+
+/// Variables of one name must be of one type.
+void check_types(const SpirvModule& vertex, const std::vector<NamedVariable>& ours,
+                 const SpirvModule& fragment, const std::vector<NamedVariable>& theirs) {
+  for (const NamedVariable& our : ours) {
+    if (our.name.starts_with("gl_")) continue;
+    for (const NamedVariable& their : theirs) {
+      if (their.name != our.name) continue;
+      const TypePair types{vertex, fragment, our.is_block && their.is_block};
+      if (types.is_same(our.type, their.type)) continue;
+      throw ShaderError("'" + our.name +
+                        "' has another type in the vertex shader than in the fragment shader; "
+                        "they must be equal");
+    }
+  }
+}
+
+void check_uniforms(const SpirvModule& vertex, const SpirvModule& fragment) {
+  const auto is_uniform = [](SpirvStorage storage) {
+    return storage == SpirvStorage::uniform || storage == SpirvStorage::uniform_constant;
+  };
+  check_types(vertex, variables_of(vertex, is_uniform), fragment,
+              variables_of(fragment, is_uniform));
+}
+
+void check_varyings(const SpirvModule& vertex, const SpirvModule& fragment) {
+  const auto outputs =
+      variables_of(vertex, [](SpirvStorage storage) { return storage == SpirvStorage::output; });
+  const auto inputs =
+      variables_of(fragment, [](SpirvStorage storage) { return storage == SpirvStorage::input; });
+  check_types(vertex, outputs, fragment, inputs);
+}
+
+/// What a uniform is unless it is set may stand in either shader.
+void share_initial_values(ShaderUniforms& vertex, ShaderUniforms& fragment) {
+  for (const ShaderUniform& ours : vertex.all) {
+    const auto theirs =
+        std::find_if(fragment.all.begin(), fragment.all.end(),
+                     [&](const ShaderUniform& other) { return other.name == ours.name; });
+    if (theirs == fragment.all.end() || theirs->words != ours.words || is_texture(ours)) continue;
+    const std::span a{vertex.words.data() + ours.first, ours.words};
+    const std::span b{fragment.words.data() + theirs->first, ours.words};
+    const auto is_zero = [](std::uint32_t word) { return word == 0; };
+    if (std::all_of(a.begin(), a.end(), is_zero)) {
+      std::copy(b.begin(), b.end(), a.begin());
+    } else if (std::all_of(b.begin(), b.end(), is_zero)) {
+      std::copy(a.begin(), a.end(), b.begin());
+    }
+  }
+}
+
 /// Arrays of the compatibility profile are as long as the shader uses them.
 bool fits(const ShaderPort& output, const ShaderPort& input) {
   return output.numbers == input.numbers ||
@@ -177,6 +286,8 @@ void link_shaders(UserShader& vertex, UserShader& fragment) {
       fragment.module->stage != ShaderStage::fragment) {
     throw ShaderError("a vertex shader and a fragment shader are right, in this order");
   }
+  check_uniforms(*vertex.module, *fragment.module);
+  share_initial_values(vertex.uniforms, fragment.uniforms);
   std::vector<ShaderPort> outputs = outputs_of(*vertex.module);
   std::vector<ShaderPort> inputs = inputs_of(*fragment.module);
   int free = std::max(free_location(outputs), free_location(inputs));
@@ -211,6 +322,7 @@ void link_shaders(UserShader& vertex, UserShader& fragment) {
       set_location(*fragment.module, input, found->location);
     }
   }
+  check_varyings(*vertex.module, *fragment.module);
   for (ShaderPort& output : outputs) {
     if (output.location >= 0) continue;
     set_location(*vertex.module, output, free);

@@ -29,8 +29,9 @@ void give_locations(SpirvModule& module);
 
 /// Gives a location to all inputs and outputs that have none: those of one name in both shaders
 /// get the same. gl_Color of a fragment shader is gl_FrontColor of the vertex shader, and
-/// gl_SecondaryColor likewise. Throws ShaderError if the shaders are not of these stages, if an
-/// input of the fragment shader has no output, or if the output has other numbers.
+/// gl_SecondaryColor likewise. Uniforms of one name get the same initial values. Throws ShaderError
+/// if the shaders are not of these stages, if an input of the fragment shader has no output, or if
+/// an input and its output, or a uniform of both, are of two types.
 void link_shaders(UserShader& vertex, UserShader& fragment);
 
 /// Two shaders that are linked.

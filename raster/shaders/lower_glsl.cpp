@@ -43,10 +43,8 @@ ShaderOp plain_op(GlslOp op) {
     case log2: return To::logarithm_2;
     case sqrt: return To::square_root;
     case inverse_sqrt: return To::inverse_square_root;
-    case float_min:
-    case number_min: return To::minimum;
-    case float_max:
-    case number_max: return To::maximum;
+    case float_min: return To::minimum;
+    case float_max: return To::maximum;
     case unsigned_min: return To::minimum_unsigned;
     case signed_min: return To::minimum_signed;
     case unsigned_max: return To::maximum_unsigned;
@@ -100,11 +98,17 @@ ShaderValue Lowering::glsl_scalar(GlslOp op, ShaderValue a, ShaderValue b, Shade
   const auto clamp = [&](ShaderValue x, ShaderValue low, ShaderValue high) {
     return make(to, ShaderOp::minimum, make(to, ShaderOp::maximum, x, low), high);
   };
+  // NMin and NMax of SPIR-V, which HLSL becomes: if one is NaN, the other.
+  const auto of_numbers = [&](ShaderOp pick, ShaderValue x, ShaderValue y) {
+    return make(to, ShaderOp::select, make(to, ShaderOp::not_equal, x, x), y, make(to, pick, x, y));
+  };
   switch (op) {
+    case number_min: return of_numbers(ShaderOp::minimum, a, b);
+    case number_max: return of_numbers(ShaderOp::maximum, a, b);
     case radians: return multiply(a, constant(std::numbers::pi_v<float> / 180.0f));
     case degrees: return multiply(a, constant(180.0f / std::numbers::pi_v<float>));
-    case float_clamp:
-    case number_clamp: return clamp(a, b, c);
+    case float_clamp: return clamp(a, b, c);
+    case number_clamp: return of_numbers(ShaderOp::minimum, of_numbers(ShaderOp::maximum, a, b), c);
     case unsigned_clamp:
       return make(to, ShaderOp::minimum_unsigned, make(to, ShaderOp::maximum_unsigned, a, b), c);
     case signed_clamp:
@@ -179,8 +183,9 @@ Scalars Lowering::glsl_result(Call& call, const SpirvInstruction& in, ShaderRegi
       return of[number][i];
     };
     const bool is_known = plain_op(op) != ShaderOp::copy || op == radians || op == degrees ||
-                          op == float_clamp || op == number_clamp || op == unsigned_clamp ||
-                          op == signed_clamp || op == float_mix || op == step || op == smooth_step;
+                          op == float_clamp || op == number_min || op == number_max ||
+                          op == number_clamp || op == unsigned_clamp || op == signed_clamp ||
+                          op == float_mix || op == step || op == smooth_step;
     if (!is_known) refuse("function " + std::to_string(static_cast<int>(op)) + " is not supported");
     made.push_back(glsl_scalar(op, operand(0), operand(1), operand(2), to));
   }

@@ -161,12 +161,15 @@ void Lowering::add_inputs(SpirvId id, const SpirvDecorations& of) {
     return;
   }
   if (tree_.inputs.size() + what.scalars > kMostScalars) refuse("inputs have too many numbers");
-  const SpirvType* number = &what;
-  while (number->kind != SpirvKind::integer && number->element != 0)
-    number = &type(number->element);
+  if (is_array_of_structures(id)) {
+    for_each_structure(id, of,
+                       [&](const SpirvDecorations& with) { add_inputs(what.element, with); });
+    return;
+  }
+  const bool is_integer = has_integers(what);
   add_numbers(id, of, [&](int location, int component, int part) {
-    tree_.inputs.push_back({of.builtin, location, component, part, of.is_flat, of.is_linear,
-                            number->kind == SpirvKind::integer});
+    tree_.inputs.push_back(
+        {of.builtin, location, component, part, of.is_flat, of.is_linear, is_integer});
   });
 }
 
@@ -178,9 +181,26 @@ void Lowering::add_outputs(std::uint32_t first, SpirvId id, const SpirvDecoratio
     });
     return;
   }
+  if (is_array_of_structures(id)) {
+    const SpirvId element = type(id).element;
+    for_each_structure(id, of, [&](const SpirvDecorations& with) {
+      add_outputs(first, element, with);
+      first += scalars(element);
+    });
+    return;
+  }
+  const bool is_integer = has_integers(type(id));
   add_numbers(id, of, [&](int location, int component, int) {
-    tree_.outputs.push_back({of.builtin, location, component, first++});
+    tree_.outputs.push_back({of.builtin, location, component, first++, is_integer});
   });
+}
+
+bool Lowering::has_integers(const SpirvType& of) const {
+  const SpirvType* number = &of;
+  while (number->kind != SpirvKind::integer && number->element != 0) {
+    number = &type(number->element);
+  }
+  return number->kind == SpirvKind::integer;
 }
 
 int Lowering::locations(SpirvId id) const {

@@ -24,6 +24,11 @@ struct ShaderUniform {
   std::uint32_t words = 1;
 };
 
+inline bool is_texture(const ShaderUniform& uniform) {
+  return uniform.kind == SpirvKind::sampled_image || uniform.kind == SpirvKind::image ||
+         uniform.kind == SpirvKind::sampler;
+}
+
 struct ShaderUniforms {
   std::vector<ShaderUniform> all{};
   /// What they are unless they are set: 0, or the shader's own values. A texture's words are its

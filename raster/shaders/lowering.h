@@ -108,6 +108,7 @@ class Lowering {
 
   void add_inputs(SpirvId id, const SpirvDecorations& of);
   void add_outputs(std::uint32_t first, SpirvId id, const SpirvDecorations& of);
+  bool has_integers(const SpirvType& of) const;
   int locations(SpirvId id) const;
   /// body(type, decorations) for each member of a structure, which has a location of its own.
   template <class Body>
@@ -121,6 +122,22 @@ class Lowering {
       body(what.members[i], member);
       location = member.location + locations(what.members[i]);
     }
+  }
+  /// body(its decorations) for each element of an array of structures, which may be arrays of them.
+  template <class Body>
+  void for_each_structure(SpirvId id, const SpirvDecorations& of, const Body& body) {
+    const SpirvType& what = type(id);
+    SpirvDecorations element = of;
+    for (std::uint32_t i = 0; i < what.count; ++i) {
+      body(element);
+      if (element.location >= 0) element.location += locations(what.element);
+    }
+  }
+  bool is_array_of_structures(SpirvId id) const {
+    const SpirvType* what = &type(id);
+    if (what->kind != SpirvKind::array) return false;
+    while (what->kind == SpirvKind::array) what = &type(what->element);
+    return what->kind == SpirvKind::structure;
   }
   /// add(location, component, part) for each scalar.
   template <class Add>

@@ -57,6 +57,7 @@ class Run {
       const auto component = static_cast<std::size_t>(output.output.component);
       if (location >= outputs_.size() || component >= 4) continue;
       outputs_[location][component] = &output.from;
+      are_bits_[location] = output.output.is_integer;
     }
   }
 
@@ -81,6 +82,7 @@ class Run {
   ShaderBatches batches_;
   int width_ = 0, height_ = 0, lanes_ = 0;
   std::array<std::array<const ShaderRegister*, 4>, kMostTargets> outputs_{};
+  std::array<bool, kMostTargets> are_bits_{};
 
   /// Of columns, as many as batches have: x + 1/2, and their place in the picture.
   std::vector<float> columns_{}, u_{};
@@ -195,7 +197,8 @@ class Run {
       store_lanes(pool_.isa(), channels.data(), dead, count, to.format, pass_.profile,
                   to.texels + (batch.y + row) * to.stride_bytes +
                       static_cast<std::ptrdiff_t>(batch.x) *
-                          static_cast<std::ptrdiff_t>(bytes_per_texel(to.format)));
+                          static_cast<std::ptrdiff_t>(bytes_per_texel(to.format)),
+                  are_bits_[target]);
     }
   }
 };
@@ -237,6 +240,19 @@ ShaderProgram compile_shader(const UserShader& shader, std::span<const std::uint
   }
   program.files = shader.module->strings;
   return program;
+}
+
+std::vector<bool> sampled_textures(const ShaderProgram& program, std::size_t count) {
+  std::vector<bool> sampled(count);
+  for (const ShaderSampleRegisters& sample : program.samples) {
+    for (const ShaderProgram::Constant& constant : program.constants) {
+      if (!sample.texture.varies && constant.number == sample.texture.number &&
+          constant.bits < count) {
+        sampled[constant.bits] = true;
+      }
+    }
+  }
+  return sampled;
 }
 
 void run_shader(const ShaderProgram& program, const ShaderPass& pass, ThreadPool& pool) {

@@ -33,11 +33,6 @@ UserShader make_shader(std::vector<std::uint32_t> words);
 /// The uniform of that name ("tint", "light.colour", "tint[0]" is "tint"), or null.
 const ShaderUniform* find_uniform(const UserShader& shader, std::string_view name);
 
-inline bool is_texture(const ShaderUniform& of) {
-  return of.kind == SpirvKind::sampled_image || of.kind == SpirvKind::image ||
-         of.kind == SpirvKind::sampler;
-}
-
 /// The bits of a number as a uniform of that kind has them; nothing if it cannot be one.
 std::optional<std::uint32_t> uniform_word(const ShaderUniform& of, double value);
 
@@ -47,6 +42,9 @@ std::optional<std::uint32_t> uniform_word(const ShaderUniform& of, double value)
 ShaderProgram compile_shader(const UserShader& shader, std::span<const std::uint32_t> words,
                              const std::vector<bool>& is_late = {});
 
+/// Which of a shader's textures a program samples, by their numbers.
+std::vector<bool> sampled_textures(const ShaderProgram& program, std::size_t count);
+
 /// A number that every pixel is given, by an input of the shader.
 struct PassVarying {
   int location = 0, component = 0;
@@ -55,7 +53,8 @@ struct PassVarying {
 
 struct ShaderPass {
   std::span<const ShaderTexture> textures{};  ///< by their numbers
-  /// By location; those without texels are left out. All of one size.
+  /// By location; those without texels are left out. All of one size. Whole numbers go into
+  /// rgba32f, bit by bit.
   std::span<const ImageView> targets{};
   /// Inputs that are not among them are the place in the picture: u, v, 0, 1.
   std::span<const PassVarying> varyings{};

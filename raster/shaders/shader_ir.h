@@ -207,6 +207,7 @@ struct ShaderOutput {
   int builtin = -1;
   int location = 0, component = 0;
   ShaderVariable variable = 0;
+  bool is_integer = false;
 };
 
 struct ShaderTree {

@@ -139,7 +139,16 @@ bool run_lanes(const LaneProgram& program, LaneFrame& frame, Isa isa, std::size_
 }
 
 void store_lanes(Isa isa, const float* const* channels, const std::int32_t* killed, int count,
-                 Format format, const Profile& profile, std::byte* to) {
+                 Format format, const Profile& profile, std::byte* to, bool are_bits) {
+  if (format == Format::rgba32f && are_bits) {
+    for (int i = 0; i < count; ++i) {
+      if (killed != nullptr && killed[i] != 0) continue;
+      for (std::size_t c = 0; c < 4; ++c) {
+        std::memcpy(to + static_cast<std::size_t>(i) * 16 + 4 * c, channels[c] + i, 4);
+      }
+    }
+    return;
+  }
   if (format == Format::rgba16f && killed == nullptr) {
     SOFTFOCUS_KERNEL(isa, store_half_lanes)
     (channels, count, profile.half_store, reinterpret_cast<std::uint16_t*>(to));
@@ -476,6 +485,20 @@ SOFTFOCUS_INLINE Floats level_of(const LaneSample& sample, const ShaderTexture& 
          floats_of(sample.more[0], frame, vector);
 }
 
+SOFTFOCUS_INLINE Mask comparison(Compare function, Floats given, Floats stored) {
+  switch (function) {
+    case Compare::never: return (given != given) & (given == given);
+    case Compare::less: return given < stored;
+    case Compare::equal: return given == stored;
+    case Compare::less_equal: return given <= stored;
+    case Compare::greater: return given > stored;
+    case Compare::not_equal: return given != stored;
+    case Compare::greater_equal: return given >= stored;
+    case Compare::always: break;
+  }
+  return (given != given) | (given == given);
+}
+
 /// Filtered texels, by the profile's texture unit.
 void sample_texels(const LaneSample& sample, const ShaderTexture& from, LaneFrame& frame) {
   alignas(64) std::array<float, kMostSampled * kLanes> u, v, lod;
@@ -494,7 +517,8 @@ void sample_texels(const LaneSample& sample, const ShaderTexture& from, LaneFram
     for (int i = 0; i < count; ++i) {
       const RgbaLanes& colour = colours[static_cast<std::size_t>(i)];
       if (sample.compared.is_there) {
-        const Mask passes = floats_of(sample.compared, frame, first + i) <= colour.r;
+        const Mask passes =
+            comparison(from.compare, floats_of(sample.compared, frame, first + i), colour.r);
         put_result(sample, 0, frame, first + i, as_bits(select(passes, splat(1.0f), splat(0.0f))));
         continue;
       }

@@ -9,6 +9,7 @@
 #include "raster/images/decoded_texture.h"
 #include "raster/images/sampler.h"
 #include "raster/lanes/isa.h"
+#include "raster/pipeline/state.h"
 #include "raster/shaders/shader_program.h"
 
 namespace softfocus {
@@ -18,6 +19,7 @@ struct ShaderTexture {
   const Texture* texture = nullptr;
   Sampler sampler{};
   const DecodedTexture* decoded = nullptr;  ///< of the pass's profile; made there if it is null
+  Compare compare = Compare::less_equal;    ///< of what is given with what is sampled
 };
 
 struct LaneFrame;
@@ -83,8 +85,9 @@ LaneProgram lane_program(const ShaderProgram& program, int lanes, Isa isa);
 bool run_lanes(const LaneProgram& program, LaneFrame& frame, Isa isa, std::size_t& stopped);
 
 /// Stores `count` lanes of four registers as texels of a row. A texel whose lane is set in `killed`
-/// stays as it is; if `killed` is null, none does.
+/// stays as it is; if `killed` is null, none does. `are_bits`: in rgba32f the numbers are whole
+/// ones, stored bit by bit.
 void store_lanes(Isa isa, const float* const* channels, const std::int32_t* killed, int count,
-                 Format format, const Profile& profile, std::byte* to);
+                 Format format, const Profile& profile, std::byte* to, bool are_bits = false);
 
 }  // namespace softfocus

@@ -133,7 +133,9 @@ void gather(const LaneSample& sample, const Lane& lane, const ShaderTexture& fro
         fetch_texel(image, wrapped(x + kOrder[i][0], image.width, sampler.wrap_u),
                     wrapped(y + kOrder[i][1], image.height, sampler.wrap_v), *lane.frame.profile);
     float value = texel[sample.sample.channel];
-    if (sample.compared.is_there) value = lane.number(sample.compared) <= texel.x ? 1.0f : 0.0f;
+    if (sample.compared.is_there) {
+      value = compare(from.compare, lane.number(sample.compared), texel.x) ? 1.0f : 0.0f;
+    }
     lane.put(sample.to[i], value);
   }
 }
@@ -178,7 +180,8 @@ void sample_one(const LaneSample& sample, const Lane& lane) {
       softfocus::sample(*from->texture, from->sampler, place_of(sample, lane, *from),
                         level_of(sample, lane, *from), *lane.frame.profile);
   if (sample.compared.is_there) {
-    lane.put(sample.to[0], lane.number(sample.compared) <= texel.x ? 1.0f : 0.0f);
+    const bool passes = compare(from->compare, lane.number(sample.compared), texel.x);
+    lane.put(sample.to[0], passes ? 1.0f : 0.0f);
     return;
   }
   for (int i = 0; i < 4; ++i) lane.put(sample.to[static_cast<std::size_t>(i)], texel[i]);

@@ -283,7 +283,7 @@ void read_size(Section& section, const Reading& reading, PipelinePass& pass) {
 
 void read_pass(Section& section, OpenedShader opened, Reading& reading) {
   Pipeline& pipeline = reading.pipeline();
-  PipelinePass& pass = add_pass(pipeline, place_in(section), std::move(opened.shader));
+  PipelinePass& pass = add_pass(pipeline, place_in(section), make_shader(std::move(opened.words)));
   pass.text = std::move(opened.text);
   add_constants(pass, opened.parameters);
   pass.name = read_text(section, "name", "");
@@ -346,7 +346,7 @@ OpenedPipeline read_pipeline(const std::filesystem::path& file) {
     shaders.push_back(
         open_pass_shader(section, read_text(section, "shader", ""), convention, reading));
     OpenedShader& shader = shaders.back();
-    for (const std::uint32_t word : shader.shader.module->words) add_to_hash(reading.hash, word);
+    for (const std::uint32_t word : shader.words) add_to_hash(reading.hash, word);
     std::move(shader.files.begin(), shader.files.end(), std::back_inserter(reading.opened.files));
     std::move(shader.warnings.begin(), shader.warnings.end(),
               std::back_inserter(reading.opened.warnings));

@@ -9,38 +9,24 @@
 #include "scenes/files/scene_error.h"
 #include "scenes/files/texture_file.h"
 #include "scenes/load/scene_sections.h"
+#include "scenes/load/shader_file.h"
 #include "scenes/surfaces/shader_surface.h"
 
 namespace softfocus {
 namespace {
 
-std::optional<std::string> read_include(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return {};
-  return read_file_bytes(path, kMostGlslBytes);
-}
-
-bool is_spirv(const std::string& bytes) {
-  return bytes.starts_with("\x03\x02\x23\x07") || bytes.starts_with("\x07\x23\x02\x03");
-}
-
-std::vector<std::uint32_t> compiled_words(const Section& section, std::string_view key,
-                                          const std::string& name, const std::string& bytes,
-                                          ShaderStage stage, Scene& scene) {
-  if (is_spirv(bytes)) return spirv_words(std::as_bytes(std::span{bytes}));
-  if (!missing_glsl().empty()) fail_at(section, key, std::string{missing_glsl()});
-  CompiledGlsl compiled = compile_glsl({.stage = stage, .name = name, .text = bytes}, read_include);
-  for (std::string& warning : compiled.warnings) scene.warnings.push_back(std::move(warning));
-  for (const std::string& file : compiled.files) scene.files.emplace_back(file);
-  return std::move(compiled.words);
+std::vector<std::uint32_t> words_of(OpenedShader opened, Scene& scene) {
+  for (std::string& warning : opened.warnings) scene.warnings.push_back(std::move(warning));
+  for (const std::string& file : opened.files) scene.files.emplace_back(file);
+  return std::move(opened.words);
 }
 
 std::vector<std::uint32_t> words_of_file(Section& section, std::string_view key,
                                          const std::filesystem::path& directory, ShaderStage stage,
                                          Scene& scene) {
-  scene.files.push_back(directory / read_text(section, key, ""));
-  const std::string bytes = read_file_bytes(scene.files.back(), kMostGlslBytes);
-  return compiled_words(section, key, scene.files.back().string(), bytes, stage, scene);
+  return words_of(
+      open_shader(directory / read_text(section, key, ""), GlslConvention::recognised, stage),
+      scene);
 }
 
 bool is_sampler(const ShaderUniform& of) { return of.kind == SpirvKind::sampled_image; }
@@ -89,15 +75,12 @@ void flatten(const Section& section, std::string_view key, const toml::node& nod
 
 std::uint32_t word_of(const Section& section, std::string_view key, const ShaderUniform& of,
                       double value) {
-  if (of.kind == SpirvKind::floating)
-    return std::bit_cast<std::uint32_t>(static_cast<float>(value));
-  if (of.kind == SpirvKind::boolean) return value != 0.0 ? ~0u : 0u;
-  const double least = of.is_signed ? -0x1p31 : 0.0, most = of.is_signed ? 0x1p31 : 0x1p32;
-  if (!(value >= least && value < most) || value != std::floor(value)) {
+  const std::optional<std::uint32_t> word = uniform_word(of, value);
+  if (!word) {
     fail_at(section, key,
             std::string{"is a whole number of 32 bits"} + (of.is_signed ? "" : ", not below 0"));
   }
-  return static_cast<std::uint32_t>(static_cast<std::int64_t>(value));
+  return *word;
 }
 
 void read_uniforms(Section section, ShaderPair& pair) {
@@ -130,20 +113,6 @@ void read_uniforms(Section section, ShaderPair& pair) {
 }
 
 // --- textures ---
-
-/// The textures that a program samples, by number.
-std::vector<bool> sampled(const ShaderProgram& program, std::size_t count) {
-  std::vector<bool> used(count);
-  for (const ShaderSampleRegisters& sample : program.samples) {
-    for (const ShaderProgram::Constant& constant : program.constants) {
-      if (!sample.texture.varies && constant.number == sample.texture.number &&
-          constant.bits < count) {
-        used[constant.bits] = true;
-      }
-    }
-  }
-  return used;
-}
 
 using BoundTextures = std::map<std::string, ShaderSurfaceTexture, std::less<>>;
 
@@ -178,7 +147,7 @@ SurfaceShader made_shader(const Section& section, const UserShader& shader,
                          shader, shader.uniforms.words, late_words(shader.uniforms))),
                      .uniforms = shader.uniforms};
   made.textures.resize(shader.uniforms.texture_count);
-  const std::vector<bool> used = sampled(*made.program, made.textures.size());
+  const std::vector<bool> used = sampled_textures(*made.program, made.textures.size());
   for (const ShaderUniform& of : shader.uniforms.all) {
     if (!is_sampler(of)) continue;
     const std::uint32_t number = shader.uniforms.words[of.first];
@@ -211,8 +180,9 @@ void read_shaders(Section& section, const std::filesystem::path& directory,
     std::vector<std::uint32_t> vertex =
         has_vertex
             ? words_of_file(section, "vertex", directory, ShaderStage::vertex, scene)
-            : compiled_words(section, "fragment", "the usual vertex shader",
-                             std::string{usual_surface_vertex()}, ShaderStage::vertex, scene);
+            : open_shader_text("the usual vertex shader", std::string{usual_surface_vertex()},
+                               GlslConvention::recognised, ShaderStage::vertex)
+                  .words;
     key = "fragment";
     ShaderPair pair = make_shader_pair(
         std::move(vertex),

@@ -1,7 +1,7 @@
 #include "scenes/load/shader_file.h"
 
-#include <cstring>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "raster/shaders/shader_error.h"
@@ -31,11 +31,8 @@ OpenedShader open_shader(const std::filesystem::path& file, GlslConvention conve
   if (!is_spirv(bytes)) {
     return open_shader_text(file.string(), std::move(bytes), convention, stage);
   }
-  const std::vector<std::byte> words{
-      reinterpret_cast<const std::byte*>(bytes.data()),
-      reinterpret_cast<const std::byte*>(bytes.data()) + bytes.size()};
   OpenedShader opened;
-  opened.shader = make_shader(spirv_words(words));
+  opened.words = spirv_words(std::as_bytes(std::span{bytes}));
   opened.files.push_back(file.string());
   return opened;
 }
@@ -46,7 +43,7 @@ OpenedShader open_shader_text(std::string name, std::string text, GlslConvention
   const GlslSource source{
       .stage = stage, .name = std::move(name), .text = std::move(text), .convention = convention};
   CompiledGlsl compiled = compile_glsl(source, read_include);
-  OpenedShader opened{make_shader(std::move(compiled.words)),
+  OpenedShader opened{std::move(compiled.words),
                       compiled.convention,
                       std::move(compiled.parameters),
                       std::move(compiled.warnings),

@@ -2,13 +2,13 @@
 // A user's shader from a file: GLSL, with what it includes, or SPIR-V.
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "raster/numbers/parameter.h"
 #include "raster/shaders/glsl/glsl.h"
-#include "raster/shaders/shader.h"
 
 namespace softfocus {
 
@@ -20,7 +20,7 @@ inline constexpr std::array kGlslConventions{
     Choice<GlslConvention>{"gl-transitions", GlslConvention::gl_transitions}};
 
 struct OpenedShader {
-  UserShader shader{};
+  std::vector<std::uint32_t> words{};  ///< SPIR-V
   GlslConvention convention = GlslConvention::plain;
   std::vector<GlslParameter> parameters{};
   std::vector<std::string> warnings{};

@@ -160,9 +160,7 @@ inline const std::map<GlslOp, ShaderOp>& each_of_glsl() {
       {sqrt, To::square_root},
       {inverse_sqrt, To::inverse_square_root},
       {float_min, To::minimum},
-      {number_min, To::minimum},
       {float_max, To::maximum},
-      {number_max, To::maximum},
       {unsigned_min, To::minimum_unsigned},
       {signed_min, To::minimum_signed},
       {unsigned_max, To::maximum_unsigned},
@@ -182,6 +180,11 @@ inline std::uint32_t times(std::uint32_t a, std::uint32_t b) { return fold(To::m
 inline std::uint32_t less(std::uint32_t a, std::uint32_t b) { return fold(To::less, a, b); }
 inline std::uint32_t clamped(std::uint32_t x, std::uint32_t low, std::uint32_t high) {
   return fold(To::minimum, fold(To::maximum, x, low), high);
+}
+
+/// Of two numbers; if one is NaN, the other.
+inline std::uint32_t of_numbers(To pick, std::uint32_t a, std::uint32_t b) {
+  return fold(To::not_equal, a, a) != 0 ? b : fold(pick, a, b);
 }
 
 inline std::uint32_t dot(Words a, Words b) {
@@ -638,8 +641,12 @@ class Oracle {
       switch (op) {
         case radians: x = times(x, bits_of(std::numbers::pi_v<float> / 180.0f)); break;
         case degrees: x = times(x, bits_of(180.0f / std::numbers::pi_v<float>)); break;
-        case float_clamp:
-        case number_clamp: x = clamped(x, of(1)[i], of(2)[i]); break;
+        case float_clamp: x = clamped(x, of(1)[i], of(2)[i]); break;
+        case number_min: x = of_numbers(To::minimum, x, of(1)[i]); break;
+        case number_max: x = of_numbers(To::maximum, x, of(1)[i]); break;
+        case number_clamp:
+          x = of_numbers(To::minimum, of_numbers(To::maximum, x, of(1)[i]), of(2)[i]);
+          break;
         case unsigned_clamp:
           x = fold(To::minimum_unsigned, fold(To::maximum_unsigned, x, of(1)[i]), of(2)[i]);
           break;

@@ -51,6 +51,12 @@ std::vector<double> numbers_of(const std::string& setting, const std::string& te
                    (of.is_signed ? "" : ", not below 0"));
 }
 
+struct ReadShader {
+  UserShader shader{};
+  GlslConvention convention{};
+  std::vector<GlslParameter> parameters{};
+};
+
 /// Sets a uniform as --set says, if the pass has one of that name.
 void set_uniform(const std::string& setting, PipelinePass& pass) {
   const auto [name, text] = split_setting("--set", setting);
@@ -73,12 +79,12 @@ void set_uniform(const std::string& setting, PipelinePass& pass) {
 }
 
 /// Throws UsageError for a setting or a texture that no shader has.
-void check_names(const ShaderOptions& options, const std::vector<OpenedShader>& all,
+void check_names(const ShaderOptions& options, const std::vector<ReadShader>& all,
                  const Pipeline* pipeline) {
   const auto check = [&](const std::string& option, const std::string& text, bool textures) {
     const std::string name = split_setting(option, text).first;
     std::vector<std::string> names;
-    for (const OpenedShader& opened : all) {
+    for (const ReadShader& opened : all) {
       for (const ShaderUniform& of : opened.shader.uniforms.all) {
         if (is_texture(of) == textures) names.push_back(of.name);
       }
@@ -116,7 +122,7 @@ void bind_files(const ShaderOptions& options, Pipeline& pipeline, PipelinePass& 
 }
 
 /// A shader as a pipeline of its own: each has texels by its own convention.
-Pipeline pipeline_of(const ShaderOptions& options, const std::string& file, OpenedShader opened) {
+Pipeline pipeline_of(const ShaderOptions& options, const std::string& file, ReadShader opened) {
   Pipeline pipeline;
   pipeline.by_codes = opened.convention != GlslConvention::plain;
   PipelinePass& pass = add_pass(pipeline, file, std::move(opened.shader));
@@ -182,10 +188,13 @@ std::vector<std::string> shader_inputs(const ShaderOptions& options) {
 
 Image with_shaders(const ShaderOptions& options, Image picture, const Profile& profile,
                    ThreadPool& pool) {
-  std::vector<OpenedShader> all;
+  std::vector<ReadShader> all;
   for (const std::string& file : options.files) {
-    all.push_back(open_shader(file, options.convention.value_or(GlslConvention::recognised)));
-    for (const std::string& warning : all.back().warnings) warn(warning);
+    OpenedShader opened =
+        open_shader(file, options.convention.value_or(GlslConvention::recognised));
+    for (const std::string& warning : opened.warnings) warn(warning);
+    all.push_back(
+        {make_shader(std::move(opened.words)), opened.convention, std::move(opened.parameters)});
   }
   OpenedPipeline opened;
   if (options.pipeline) opened = open_pipeline(options);

@@ -203,8 +203,12 @@ CompiledGlsl compile_glsl(const GlslSource& source, const GlslReader& read) {
     const std::string_view why = error.what();
     const bool is_relaxable =
         why.find("when expanded from macros") != std::string_view::npos ||
+        why.find("'floating-point suffix'") != std::string_view::npos ||
         why.find("'#define': names containing consecutive") != std::string_view::npos;
-    GlslText raised = glsl_text(source, read, true);
+    // Which functions a constant may be made with; since 4.20 any.
+    constexpr int kInitialisers = 420;
+    const bool is_constant = why.find("'non-constant initializer'") != std::string_view::npos;
+    GlslText raised = glsl_text(source, read, true, is_constant ? kInitialisers : 0);
     if (!is_relaxable && !raised.is_raised) throw;
     try {
       return compiled(source, std::move(raised), is_relaxable);

@@ -486,7 +486,7 @@ bool has_function(std::span<const GlslToken> tokens, std::string_view returns,
   return false;
 }
 
-GlslText glsl_text(const GlslSource& source, const GlslReader& read, bool raise) {
+GlslText glsl_text(const GlslSource& source, const GlslReader& read, bool raise, int least) {
   GlslText out;
   std::string text = cleaned(source.text, source.name);
   Includes includes(read, out.files);
@@ -508,6 +508,7 @@ GlslText glsl_text(const GlslSource& source, const GlslReader& read, bool raise)
     }
     GlslVersion raised = out.taken_as;
     if (raise) raised = raised_version(out.taken_as, out.convention, tokens);
+    if (raised.number < least && !raised.is_es) raised = {least, false, "compatibility"};
     out.is_raised = raised.number > out.taken_as.number;
     if (out.said_version) {
       // In front of everything, where it belongs and comments often stand.

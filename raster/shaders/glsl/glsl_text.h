@@ -56,9 +56,10 @@ constexpr std::string_view kMissingInclude = "softfocus_missing_include";
 bool has_stage_condition(std::span<const GlslToken> tokens);
 
 /// Throws ShaderError. `raise`: to a later version, in whose compatibility profile stands what the
-/// text's extensions bring and glslang knows of no earlier version; GlslText::is_raised says
-/// whether there is one.
-GlslText glsl_text(const GlslSource& source, const GlslReader& read, bool raise = false);
+/// text's extensions bring and glslang knows of no earlier version; to `least` at the least, if
+/// that is not 0. GlslText::is_raised says whether there is one.
+GlslText glsl_text(const GlslSource& source, const GlslReader& read, bool raise = false,
+                   int least = 0);
 
 /// Throws ShaderError for what glslang would take too much stack, memory or time for: macros that
 /// grow without end, expressions and structures too deep. `text`: all that a compiler is given.

@@ -511,3 +511,18 @@ TEST_CASE("threads compile at once, each to the same words" * doctest::test_suit
   for (std::thread& thread : threads) thread.join();
   CHECK(equal == std::vector<int>{20, 20, 20, 20});
 }
+
+TEST_CASE("what drivers take and old versions do not say: suffixes, constants by newer functions") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  CHECK(error_of_text("#version 110\nvoid main() { gl_FragColor = vec4(0.5f); }\n") == "none");
+  CHECK(error_of_text("#version 120\n"
+                      "void main() {\n"
+                      "  const mat2 m = transpose(mat2(1.0, 2.0, 3.0, 4.0));\n"
+                      "  gl_FragColor = vec4(m[0], m[1]);\n"
+                      "}\n") == "none");
+  // ES has no version of which it is true, and what is wrong stays the first error.
+  const std::string error = error_of_text(
+      "#version 300 es\nprecision highp float;\nuniform float f;\nout vec4 c;\n"
+      "const float g = f;\nvoid main() { c = vec4(g); }\n");
+  CHECK(error.starts_with("mine.frag:5: "));
+}

@@ -2,7 +2,12 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
+#include <bit>
+#include <limits>
+
 #include "raster/shaders/glsl/glsl.h"
+#include "raster/shaders/shader.h"
 #include "tests/support/shader_checks.h"
 #include "tests/support/skip.h"
 
@@ -167,4 +172,41 @@ void main() {
              {.textures = textures, .targets = {&view, 1}}, pool);
   // 8x4, 4x2, 2x1 and 1x1, each by 2 level + 1.
   CHECK(load_texel(found, 39, 0) == glm::vec4{15.0f, 8.0f, 37.0f, 22.0f});
+}
+
+TEST_CASE("SPIR-V's NMin, NMax and NClamp give the number, if the other is NaN") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  GlslSource source{.name = "mine.frag"};
+  source.text =
+      "#version 330\nuniform float a, b, c;\nout vec4 colour;\n"
+      "void main() { colour = vec4(min(a, b), max(a, b), clamp(a, b, c), 1.0); }\n";
+  std::vector<std::uint32_t> words =
+      compile_glsl(source, [](const std::string&) { return std::nullopt; }).words;
+  int changed = 0;
+  for (std::size_t i = 5; i < words.size(); i += words[i] >> 16) {
+    constexpr std::uint32_t kExtInst = 12;
+    if ((words[i] & 0xFFFF) != kExtInst) continue;
+    const auto op = static_cast<GlslOp>(words[i + 4]);
+    using enum GlslOp;
+    const GlslOp to = op == float_min ? number_min : op == float_max ? number_max : number_clamp;
+    words[i + 4] = static_cast<std::uint32_t>(to);
+    ++changed;
+  }
+  REQUIRE(changed == 3);
+  const UserShader shader = make_shader(words);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  ThreadPool pool{1};
+  const auto results = [&](float a, float b) {
+    std::vector<std::uint32_t> uniforms = shader.uniforms.words;
+    uniforms[find_uniform(shader, "a")->first] = std::bit_cast<std::uint32_t>(a);
+    uniforms[find_uniform(shader, "b")->first] = std::bit_cast<std::uint32_t>(b);
+    uniforms[find_uniform(shader, "c")->first] = std::bit_cast<std::uint32_t>(8.0f);
+    std::array<float, 4> pixel{};
+    const ImageView target = view_of(Format::rgba32f, pixel.data(), 1, 1);
+    run_shader(compile_shader(shader, uniforms), {.targets = {&target, 1}}, pool);
+    return pixel;
+  };
+  CHECK(results(1.0f, 2.0f) == std::array<float, 4>{1.0f, 2.0f, 2.0f, 1.0f});
+  CHECK(results(nan, 2.0f) == std::array<float, 4>{2.0f, 2.0f, 2.0f, 1.0f});
+  CHECK(results(1.0f, nan) == std::array<float, 4>{1.0f, 1.0f, 1.0f, 1.0f});
 }

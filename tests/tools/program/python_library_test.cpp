@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "raster/shaders/glsl/glsl.h"
 #include "tests/support/run_program.h"
 #include "tests/support/skip.h"
 
@@ -32,6 +33,40 @@ bool done(const std::string& program, const std::string& quoted,
 }
 }  // namespace
 #endif
+
+TEST_CASE("shade.py runs a shader on an array, and tells its errors by file and line") {
+#ifdef SOFTFOCUS_LIBRARY
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const std::string python = python_with_numpy();
+  if (python.empty()) return skip("numpy", "no python3 with NumPy");
+  const TemporaryDirectory folder;
+  const std::string picture = folder.file("picture.npy"), result = folder.file("result.npy"),
+                    shader = folder.file("mine.frag");
+  const std::string library = "SOFTFOCUS_LIBRARY=" SOFTFOCUS_LIBRARY " " + python + " -B";
+  const std::string script = SOFTFOCUS_TEST_DATA "/../../docs/examples/embedding/shade.py";
+  const std::string make =
+      "import sys, numpy as n; n.save(sys.argv[1], n.random.default_rng(1).random((5, 7, 4), "
+      "'f4'))";
+  REQUIRE(done(python + " -c", make, {picture}));
+  write_file(shader,
+             "#version 330\nuniform sampler2D p;\nuniform vec2 gain;\nout vec4 c;\n"
+             "void main() { c = texelFetch(p, ivec2(gl_FragCoord.xy), 0) * gain.y; }\n");
+  REQUIRE(done(library, script, {shader, picture, result, "gain=0,0.5"}));
+  CHECK(done(python + " -c",
+             "import sys, numpy as n; a, b = [n.load(f) for f in sys.argv[1:]]; "
+             "sys.exit(not (a * n.float32(0.5) == b).all())",
+             {picture, result}));
+  CHECK(!done(library, script, {shader, picture, result, "gain=1", "2>/dev/null"}));
+  CHECK(done(library + " -c",
+             "import sys; sys.path.insert(0, sys.argv[1]); import shade\n"
+             "try: shade.Shader('void main() {\\n  wrong;\\n}', 'mine.frag')\n"
+             "except ValueError as e: assert str(e).startswith('mine.frag:2: '), e\n"
+             "else: sys.exit(1)",
+             {SOFTFOCUS_TEST_DATA "/../../docs/examples/embedding"}));
+#else
+  skip("", "a build without the shared library");
+#endif
+}
 
 TEST_CASE("refocus.py gives what the program writes, to the bit") {
 #ifdef SOFTFOCUS_LIBRARY
