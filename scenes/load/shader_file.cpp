@@ -43,12 +43,9 @@ OpenedShader open_shader_text(std::string name, std::string text, GlslConvention
   const GlslSource source{
       .stage = stage, .name = std::move(name), .text = std::move(text), .convention = convention};
   CompiledGlsl compiled = compile_glsl(source, read_include);
-  OpenedShader opened{std::move(compiled.words),
-                      compiled.convention,
-                      std::move(compiled.parameters),
-                      std::move(compiled.warnings),
-                      std::move(compiled.text),
-                      std::move(compiled.files)};
+  OpenedShader opened{std::move(compiled.words),      compiled.convention,
+                      std::move(compiled.parameters), std::move(compiled.warnings),
+                      std::move(compiled.text),       std::move(compiled.files)};
   opened.files.push_back(source.name);
   return opened;
 }

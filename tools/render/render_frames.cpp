@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "scenes/draw/frame_matrices.h"
+#include "scenes/load/pipeline_file.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
 #include "tools/pictures/picture_notes.h"
