@@ -25,10 +25,12 @@ struct DecodedAxis {
 
 /// Of numbers that are not initialised.
 struct DecodedAllocator : RowAllocator<float> {
+  // NOLINTBEGIN(readability-identifier-naming): the standard library's names
   template <class U>
   struct rebind {
     using other = DecodedAllocator;
   };
+  // NOLINTEND(readability-identifier-naming)
   void construct(float* place) { ::new (static_cast<void*>(place)) float; }
 };
 

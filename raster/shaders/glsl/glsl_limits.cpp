@@ -497,6 +497,11 @@ void check_limits(std::string_view text, const std::string& name) {
     for (std::size_t i = 0; i < part.size(); ++i) {
       if (part[i].text == "{" && depth++ == 0 && i > 0 && part[i - 1].text == ")") ++functions;
       if (part[i].text == "}") depth = std::max(0, depth - 1);
+      // Arguments that are no constants end glslang.
+      const bool is_barrier = part[i].text == "memoryBarrier" && i + 2 < part.size();
+      if (is_barrier && part[i + 1].text == "(" && part[i + 2].text != ")") {
+        places.refuse(part[i], "memoryBarrier() takes no arguments");
+      }
       if (functions > kMostFunctions) places.refuse(part[i], "more than 2000 functions");
     }
   }
