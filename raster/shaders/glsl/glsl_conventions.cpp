@@ -360,13 +360,9 @@ GlslSurroundings glsl_surroundings(GlslConvention convention, const GlslSource& 
         "#extension GL_EXT_shader_non_constant_global_initializers : enable\n" + around.before;
   }
   // Reserved in ES 3.00, and browsers take it all the same.
-  bool defines_sample = false;
-  for (std::size_t i = 1; i < tokens.size(); ++i) {
-    defines_sample =
-        defines_sample || (tokens[i - 1].text == "define" && tokens[i].text == "sample");
-  }
-  if (version.is_es && version.number < 320 && uses(tokens, "sample") && !defines_sample) {
-    around.before += "#define sample softfocus_sample\n";
+  if (version.is_es && version.number < 320 && convention == GlslConvention::plain &&
+      uses(tokens, "sample")) {
+    around.before += "#define sample sample_\n";
   }
   // glslang knows these, and makes no SPIR-V of them. Noise is 0 with every driver.
   if (!version.is_es && uses(tokens, "ftransform")) {
