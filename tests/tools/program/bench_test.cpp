@@ -355,8 +355,9 @@ TEST_CASE("bench: bad options are refused with what would be right") {
   refused({"figures", "--max-coc", "2000"}, {"--max-coc"});
   refused({"figures", "--vs", "voodoo"}, {"--vs 'voodoo'", "llvmpipe, llvmpipe-sse41, softpipe"});
   refused({"figures", "--focal-length", "3000"}, {"--focal-length 3000 mm"});
-  refused({"figures", "--vs", "llvmpipe", "--method", "disc-layers"},
-          {"--vs and --method disc-layers", "two-pass, one-pass and pipelines", "--method pinhole"});
+  refused(
+      {"figures", "--vs", "llvmpipe", "--method", "disc-layers"},
+      {"--vs and --method disc-layers", "two-pass, one-pass and pipelines", "--method pinhole"});
   refused({"figures", "--vs", "llvmpipe", "--method", "auto"}, {"--vs and --method auto"});
   refused({"--image", "64x64", "--method", "auto"}, {"--image and --method auto", "SCENE"});
   refused({"--image", "64x64", "--method", "accumulation"}, {"--image and --method accumulation"});
