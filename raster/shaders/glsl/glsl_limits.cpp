@@ -107,15 +107,13 @@ class Macros {
   explicit Macros(std::span<const GlslToken> tokens) {
     split(tokens);
     find_loose(tokens);
-    int rounds = 0;
-    for (bool grew = true; grew; ++rounds) {
-      grew = false;
-      for (const Definition& of : definitions_) grew = add(of) || grew;
-      if (rounds == kMostRounds && grew) {
-        is_endless_ = true;
-        return;
-      }
-    }
+    weigh_all();
+    if (!is_loose_) return;
+    // A macro that is called by another's parameter repeats its arguments as often as any does that
+    // calls none so. If it does call one, it is weighed too lightly: a bound of all such chains has
+    // no end where a shader passes the names of its blend modes on.
+    loose_times_ = most_times_;
+    weigh_all();
   }
 
   std::vector<std::span<const GlslToken>> code{};  ///< what is no directive, and conditions
@@ -143,11 +141,13 @@ class Macros {
   std::unordered_map<std::string_view, MacroName> names_{};
   /// A name that takes arguments stands somewhere without: anything in brackets may become its
   /// arguments.
-  bool is_loose_ = false;
+  bool is_loose_ = false;     ///< a macro's name stands without its brackets
+  bool is_adjacent_ = false;  ///< one word that is replaced stands before another
   bool is_endless_ = false;
   std::unordered_set<std::string_view> pasted_names_{};  ///< that `##` may make
   Weight pasted_{};                                      ///< the worst of them
-  double most_times_ = 1;                                ///< of all macros
+  double loose_times_ = 1;
+  double most_times_ = 1;  ///< of all macros
 
   void split(std::span<const GlslToken> tokens) {
     std::size_t begin = 0;
@@ -197,16 +197,32 @@ class Macros {
         if (i + 1 == tokens.size() || tokens[i + 1].text != "(") is_loose_ = true;
       }
     };
-    for (const auto& tokens : code) look(tokens, {});
+    // Only there can what begins an argument or a body become a macro's brackets.
+    const auto find_adjacent = [&](std::span<const GlslToken> tokens,
+                                   std::span<const std::string_view> parameters) {
+      bool is_before = false;
+      for (const GlslToken& token : tokens) {
+        const bool is_replaced =
+            names_.contains(token.text) ||
+            std::find(parameters.begin(), parameters.end(), token.text) != parameters.end();
+        is_adjacent_ = is_adjacent_ || (is_before && is_replaced);
+        is_before = is_replaced;
+      }
+    };
+    for (const auto& tokens : code) {
+      look(tokens, {});
+      find_adjacent(tokens, {});
+    }
     bool pastes = false;
     for (const Definition& of : definitions_) {
       look(of.body, of.name);
+      find_adjacent(of.body, of.parameters);
       int open = 0;
       for (std::size_t i = 0; i < of.body.size(); ++i) {
         open += of.body[i].text == "(" ? 1 : of.body[i].text == ")" ? -1 : 0;
         pastes = pastes || (i > 0 && of.body[i].text == "#" && of.body[i - 1].text == "#");
       }
-      // Brackets of which one half is in a macro: what stands between is no group here.
+      // If a macro has one bracket of a pair, what stands between the two is no group here.
       if (open != 0 && uses_arguments(of)) is_endless_ = true;
     }
     if (pastes) find_pasted(all);
@@ -241,6 +257,15 @@ class Macros {
       if (!is_made && !reached[name.size()]) continue;
       pasted_names_.insert(name);
       if (of.takes_arguments) is_loose_ = true;
+    }
+  }
+
+  void weigh_all() {
+    int rounds = 0;
+    for (bool grew = true; grew && !is_endless_; ++rounds) {
+      grew = false;
+      for (const Definition& of : definitions_) grew = add(of) || grew;
+      is_endless_ = rounds == kMostRounds && grew;
     }
   }
 
@@ -305,7 +330,7 @@ class Macros {
     }
   };
 
-  /// `own`: the macro of which this is the body; its name is not replaced in it.
+  /// `own`: the macro whose body this is, where its name is not replaced; empty of code.
   template <class Found>
   Weight weigh(std::span<const GlslToken> tokens, std::string_view own, ParameterUses* uses,
                const Found& found) const {
@@ -330,6 +355,14 @@ class Macros {
       sum.ends_statements = sum.ends_statements || of.ends_statements;
       level.take(of);
     };
+    // What stands behind a name that may become another, or begins an argument or a body.
+    const auto may_be_anothers = [&](std::size_t i, const MacroName* macro) {
+      if (i == 0) return own.empty() || is_adjacent_;
+      const std::string_view before = tokens[i - 1].text;
+      if (is_parameter(i - 1) || is_pasted(i - 1) || before == ")") return true;
+      if (macro != nullptr) return !macro->takes_arguments || macro->definitions.size() > 1;
+      return is_adjacent_ && (before == "(" || before == ",");
+    };
     const auto open = [&](std::size_t i) {
       Level level{.is_list = tokens[i].text == "(" && i > 0 &&
                              (is_word_or_number(tokens[i - 1]) || tokens[i - 1].text == "]")};
@@ -339,12 +372,7 @@ class Macros {
         level.outside = macro->times_outside;
         level.depth = 1 + macro->weight.inside;
       }
-      // What begins an argument or a body, or stands behind a name that may become another.
-      if (is_loose_ &&
-          (i == 0 || macro != nullptr || is_parameter(i - 1) || is_pasted(i - 1) ||
-           tokens[i - 1].text == "(" || tokens[i - 1].text == "," || tokens[i - 1].text == ")")) {
-        level.factor = level.outside = most_times_;
-      }
+      if (is_loose_ && may_be_anothers(i, macro)) level.factor = level.outside = loose_times_;
       level.times = levels.back().times * level.factor;
       levels.push_back(level);
     };

@@ -429,6 +429,11 @@ TEST_CASE("macros that grow without end are refused before they are expanded") {
   CHECK(error_of_text("#version 330\nout vec4 o;\nuniform float x;\n#define f(a) a + a\n"
                       "#define J(a, b) a b\nvoid main() { o = vec4(" +
                       nested + "); }\n") != "none");
+  std::string called = "x";
+  for (int i = 0; i < 40; ++i) called = "G(f, " + called + ")";
+  CHECK(error_of_text("#version 330\nout vec4 o;\nuniform float x;\n#define f(a) (a + a)\n"
+                      "#define G(n, b) n(b)\nvoid main() { o = vec4(" +
+                      called + "); }\n") != "none");
   // Each names all others.
   std::string circle = "#version 330\n";
   for (int i = 0; i < 12; ++i) {
@@ -453,10 +458,19 @@ TEST_CASE("macros as shaders have them are no matter") {
       "#ifdef OTHER\n#define lerp mix\n#else\n#define mix_ lerp\n#define lerp mix\n#endif\n"
       "#define NAME(n) value##n\n#define STEP s += noise(vec2(s, x)); s *= 0.5;\n"
       "#define STEPS STEP STEP STEP STEP STEP STEP STEP STEP\n";
+  // A blend mode for each channel, by its name.
+  text +=
+      "#define burn(a, b) ((b == 0.0) ? b : max((1.0 - ((1.0 - a) / b)), 0.0))\n"
+      "#define dodge(a, b) ((b == 1.0) ? b : min(a / (1.0 - b), 1.0))\n"
+      "#define vivid(a, b) ((b < 0.5) ? burn(a, (2.0 * b)) : dodge(a, (2.0 * (b - 0.5))))\n"
+      "#define each(a, b, mode) vec3(mode(a.r, b.r), mode(a.g, b.g), mode(a.b, b.b))\n"
+      "#define vivid_light(a, b) each(a, b, vivid)\n"
+      "#define opacity(a, b, mode, o) (mode(a, b) * o + b * (1.0 - o))\n";
   for (int i = 0; i < 3000; ++i) text += "#define N" + std::to_string(i) + " (-1 + 2)\n";
   text +=
       "void main() {\n  float s = x, value2 = lerp(x, 1.0, 0.5);\n  STEPS STEPS STEPS STEPS\n"
-      "  o = vec4(s + NAME(2) + noise(vec2(noise(vec2(x)))));\n}\n";
+      "  vec3 c = opacity(vec3(s), vec3(x), vivid_light, 0.5) + vivid_light(vec3(x), vec3(s));\n"
+      "  o = vec4(s + c.r + NAME(2) + noise(vec2(noise(vec2(x)))));\n}\n";
   CHECK(error_of_text(text) == "none");
 }
 
