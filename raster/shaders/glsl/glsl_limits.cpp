@@ -49,6 +49,13 @@ struct Weight {
   bool ends_statements = false;
 };
 
+/// How often what a parameter stands for is there afterwards, and how often at the macro's own
+/// level.
+struct Uses {
+  double all = 0, outside = 0;
+};
+using ParameterUses = std::unordered_map<std::string_view, Uses>;
+
 struct Definition {
   std::string_view name{};
   std::vector<std::string_view> parameters{};
@@ -59,16 +66,17 @@ struct Definition {
 struct MacroName {
   std::vector<std::size_t> definitions{};
   Weight weight{};
-  /// How often an argument's tokens are there afterwards, and how often at the macro's own level.
-  double times = 1, times_outside = 0;
+  std::vector<Uses> arguments{};
+  Uses any_argument{.all = 1};
   bool takes_arguments = false;
-};
+  bool may_open = false;  ///< what it becomes may begin with a bracket
+  bool may_call = false;  ///< what it becomes may end in the name of a macro that takes arguments
 
-/// How often a parameter stands in a definition.
-struct Uses {
-  double all = 0, outside = 0;
+  /// Of the argument at a position, or of any, where there is none.
+  Uses uses_of(std::size_t argument) const {
+    return argument < arguments.size() ? arguments[argument] : any_argument;
+  }
 };
-using ParameterUses = std::unordered_map<std::string_view, Uses>;
 
 /// Gives tokens the lines that `#line` says, and finds the file of each place.
 class Places {
@@ -142,7 +150,7 @@ class Macros {
   /// A name that takes arguments stands somewhere without: anything in brackets may become its
   /// arguments.
   bool is_loose_ = false;     ///< a macro's name stands without its brackets
-  bool is_adjacent_ = false;  ///< one word that is replaced stands before another
+  bool is_adjacent_ = false;  ///< such a name may end what stands before a bracket's beginning
   bool is_endless_ = false;
   std::unordered_set<std::string_view> pasted_names_{};  ///< that `##` may make
   Weight pasted_{};                                      ///< the worst of them
@@ -197,18 +205,7 @@ class Macros {
         if (i + 1 == tokens.size() || tokens[i + 1].text != "(") is_loose_ = true;
       }
     };
-    // Only there can what begins an argument or a body become a macro's brackets.
-    const auto find_adjacent = [&](std::span<const GlslToken> tokens,
-                                   std::span<const std::string_view> parameters) {
-      bool is_before = false;
-      for (const GlslToken& token : tokens) {
-        const bool is_replaced =
-            names_.contains(token.text) ||
-            std::find(parameters.begin(), parameters.end(), token.text) != parameters.end();
-        is_adjacent_ = is_adjacent_ || (is_before && is_replaced);
-        is_before = is_replaced;
-      }
-    };
+    find_ends();
     for (const auto& tokens : code) {
       look(tokens, {});
       find_adjacent(tokens, {});
@@ -226,6 +223,42 @@ class Macros {
       if (open != 0 && uses_arguments(of)) is_endless_ = true;
     }
     if (pastes) find_pasted(all);
+  }
+  static bool has(std::span<const std::string_view> parameters, const GlslToken& token) {
+    return std::find(parameters.begin(), parameters.end(), token.text) != parameters.end();
+  }
+  /// Whether what a word becomes may begin with a bracket, or end in the name of a macro that takes
+  /// arguments.
+  bool may_open(const GlslToken& token, std::span<const std::string_view> parameters) const {
+    const auto found = names_.find(token.text);
+    return has(parameters, token) || (found != names_.end() && found->second.may_open);
+  }
+  bool may_call(const GlslToken& token, std::span<const std::string_view> parameters) const {
+    const auto found = names_.find(token.text);
+    return has(parameters, token) || token.text == ")" ||
+           (found != names_.end() && (found->second.takes_arguments || found->second.may_call));
+  }
+  void find_ends() {
+    for (bool grew = true; grew;) {
+      grew = false;
+      for (const Definition& of : definitions_) {
+        MacroName& name = names_[of.name];
+        const bool opens = of.body.empty() || of.body.front().text == "(" ||
+                           may_open(of.body.front(), of.parameters);
+        const bool calls = of.body.empty() || may_call(of.body.back(), of.parameters);
+        grew = grew || (opens && !name.may_open) || (calls && !name.may_call);
+        name.may_open = name.may_open || opens;
+        name.may_call = name.may_call || calls;
+      }
+    }
+  }
+  /// Only between two such words can what begins an argument or a body become a macro's brackets.
+  void find_adjacent(std::span<const GlslToken> tokens,
+                     std::span<const std::string_view> parameters) {
+    for (std::size_t i = 1; i < tokens.size(); ++i) {
+      is_adjacent_ =
+          is_adjacent_ || (may_call(tokens[i - 1], parameters) && may_open(tokens[i], parameters));
+    }
   }
   bool uses_arguments(const Definition& of) const {
     return std::any_of(of.body.begin(), of.body.end(), [&](const GlslToken& token) {
@@ -296,24 +329,46 @@ class Macros {
       made.operators = std::max(made.operators, made.worst);
       raise_all(pasted_);
     }
-    for (const auto& [parameter, use] : uses) {
-      raise(name.times, use.all);
-      raise(name.times_outside, use.outside);
+    if (name.arguments.size() < of.parameters.size()) {
+      name.arguments.resize(of.parameters.size(), Uses{.all = 1});
     }
-    raise(most_times_, name.times);
+    for (std::size_t i = 0; i < of.parameters.size(); ++i) {
+      const Uses& use = uses.at(of.parameters[i]);
+      for (Uses* const to : {&name.arguments[i], &name.any_argument}) {
+        raise(to->all, use.all);
+        raise(to->outside, use.outside);
+      }
+    }
+    raise(most_times_, name.any_argument.all);
     return grew;
   }
 
   struct Level {
     bool is_list = false;
+    bool is_index = false;  ///< in square brackets
     double operators = 0, inside = 0;
     double head = -1;  ///< of its first part, once that has ended
     double worst = 0;  ///< of its parts before this one
     double times = 1;  ///< that a token in it is there
-    /// Of a macro's arguments: how often they are there behind it, and how deep.
-    double factor = 1, outside = 0, depth = 1;
+    double depth = 1;  ///< of what is in it
+    /// If it holds a macro's arguments: which macro's, which is the present one, how often that is
+    /// there behind the macro, and the operators that those before it become.
+    const MacroName* called = nullptr;
+    std::size_t argument = 0;
+    Uses uses{.all = 1};
+    Uses before{};
 
     double all() const { return std::max(worst, operators + inside); }
+    Uses repeated() const {
+      return {.all = before.all + uses.all * all(),
+              .outside = before.outside + uses.outside * all()};
+    }
+    void begin_argument(std::size_t number) {
+      before = repeated();
+      worst = operators = inside = 0;
+      argument = number;
+      uses = called->uses_of(number);
+    }
     void end_part() {
       if (head < 0) head = operators + inside;
       worst = all();
@@ -364,24 +419,42 @@ class Macros {
       return is_adjacent_ && (before == "(" || before == ",");
     };
     const auto open = [&](std::size_t i) {
-      Level level{.is_list = tokens[i].text == "(" && i > 0 &&
-                             (is_word_or_number(tokens[i - 1]) || tokens[i - 1].text == "]")};
+      Level level;
+      level.is_index = tokens[i].text == "[";
+      level.is_list = !level.is_index && i > 0 &&
+                      (is_word_or_number(tokens[i - 1]) || tokens[i - 1].text == "]");
       const MacroName* const macro = i > 0 ? macro_at(i - 1) : nullptr;
       if (macro != nullptr && macro->takes_arguments) {
-        level.factor = macro->times;
-        level.outside = macro->times_outside;
         level.depth = 1 + macro->weight.inside;
+        level.called = macro;
+        level.uses = macro->uses_of(0);
       }
-      if (is_loose_ && may_be_anothers(i, macro)) level.factor = level.outside = loose_times_;
-      level.times = levels.back().times * level.factor;
+      if (is_loose_ && may_be_anothers(i, macro)) {
+        level.called = nullptr;
+        level.uses = {.all = loose_times_, .outside = loose_times_};
+      }
+      level.times = levels.back().times * level.uses.all;
       levels.push_back(level);
+    };
+    // Square brackets hold no comma of a macro's back: behind it any argument may be meant.
+    const auto begin_argument = [&] {
+      std::size_t of = levels.size() - 1;
+      while (of > 0 && levels[of].is_index) --of;
+      if (levels[of].called == nullptr) return false;
+      constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
+      const bool is_sure = of + 1 == levels.size() && levels[of].argument != kAny;
+      levels[of].begin_argument(is_sure ? levels[of].argument + 1 : kAny);
+      levels[of].times = levels[of - 1].times * levels[of].uses.all;
+      for (std::size_t i = of + 1; i < levels.size(); ++i) levels[i].times = levels[of].times;
+      return true;
     };
     const auto close = [&](const GlslToken& token) {
       const Level inner = levels.back();
       levels.pop_back();
       Level& outer = levels.back();
-      outer.operators += inner.outside * inner.all();
-      outer.inside = std::max(outer.inside, inner.depth + inner.factor * inner.all());
+      const Uses repeated = inner.repeated();
+      outer.operators += repeated.outside;
+      outer.inside = std::max(outer.inside, inner.depth + repeated.all);
       found(outer.all(), token);
     };
     for (std::size_t i = 0; i < tokens.size(); ++i) {
@@ -403,6 +476,8 @@ class Macros {
         open(i);
       } else if (c == ')' || c == ']') {
         if (levels.size() > 1) close(token);
+      } else if (c == ',' && begin_argument()) {
+        continue;
       } else if (c == ';' || c == '{' || c == '}' || (c == ',' && level.is_list)) {
         level.end_part();
         sum.ends_statements = sum.ends_statements || levels.size() == 1;

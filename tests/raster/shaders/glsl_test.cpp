@@ -410,10 +410,7 @@ TEST_CASE("macros that grow without end are refused before they are expanded") {
     std::string text = "#version 330\nout vec4 o;\nuniform float x;\n#define A0 " + first + "\n";
     for (int i = 1; i <= 40; ++i) {
       const std::string before = "A" + std::to_string(i - 1);
-      for (const std::string& part : {std::string("#define A"), std::to_string(i), std::string(" "),
-                                      before, between, before, std::string("\n")}) {
-        text += part;
-      }
+      text += "#define A" + std::to_string(i) + " " + before + between + before + "\n";
     }
     return text;
   };
@@ -463,7 +460,7 @@ TEST_CASE("macros as shaders have them are no matter") {
       "#define burn(a, b) ((b == 0.0) ? b : max((1.0 - ((1.0 - a) / b)), 0.0))\n"
       "#define dodge(a, b) ((b == 1.0) ? b : min(a / (1.0 - b), 1.0))\n"
       "#define vivid(a, b) ((b < 0.5) ? burn(a, (2.0 * b)) : dodge(a, (2.0 * (b - 0.5))))\n"
-      "#define each(a, b, mode) vec3(mode(a.r, b.r), mode(a.g, b.g), mode(a.b, b.b))\n"
+      "#define each(u, v, mode) vec3(mode(u.r, v.r), mode(u.g, v.g), mode(u.b, v.b))\n"
       "#define vivid_light(a, b) each(a, b, vivid)\n"
       "#define opacity(a, b, mode, o) (mode(a, b) * o + b * (1.0 - o))\n";
   for (int i = 0; i < 3000; ++i) text += "#define N" + std::to_string(i) + " (-1 + 2)\n";
