@@ -1,12 +1,14 @@
 """The emulated GPU by the C interface of libsoftfocus, and workers that run cases on it: a case that
 crashes or hangs costs its worker and nothing else."""
 
+import argparse
 import ctypes
 import glob
 import multiprocessing
 import os
 import re
 import struct
+import sys
 
 OK, BAD_ARGUMENT, NO_MEMORY, FAILED, BAD_SHADER = range(5)
 STAGES = {"fragment": 1, "vertex": 2}
@@ -298,3 +300,21 @@ class Results:
         if total[1]:
             print(f"{100 * total[2] / total[1]:.2f} % of the applicable cases pass")
         return all(self.reason(path) for path, _ in self.failures)
+
+
+def run_suite(about, folders, known, run_case, cases_of):
+    """The runner's command line. `cases_of`: of a checkout and a folder, each case's group and
+    path, and what `run_case` takes."""
+    parser = argparse.ArgumentParser(description=about,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("checkout")
+    parser.add_argument("folder", nargs="*")
+    parser.add_argument("--only", default="")
+    options = parser.parse_args()
+    worker = Worker(find_library(), run_case)
+    results = Results(known)
+    for folder in options.folder or folders:
+        for group, path, case in cases_of(options.checkout, folder):
+            if options.only in path:
+                results.add(group, path, *worker.run(case))
+    sys.exit(0 if results.tell() else 1)

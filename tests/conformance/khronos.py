@@ -10,7 +10,6 @@ the cases whose path has a text. The library is the file that SOFTFOCUS_LIBRARY 
 build in this checkout. The exit status is 1 if a case fails that is not in KNOWN.
 """
 
-import argparse
 import glob
 import os
 import sys
@@ -100,27 +99,16 @@ def drawn(program, case):
     return "passed", ""
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("checkout")
-    parser.add_argument("folder", nargs="*")
-    parser.add_argument("--only", default="")
-    options = parser.parse_args()
-    worker = emulator.Worker(emulator.find_library(), run_case)
-    results = emulator.Results(KNOWN)
-    for folder in options.folder or FOLDERS:
-        suite = os.path.basename(folder.removesuffix("/shaders"))
-        files = sorted(glob.glob(os.path.join(options.checkout, folder, "*.test")))
-        if not files:
-            sys.exit(f"{options.checkout}/{folder} has no .test files")
-        for file in files:
-            group = f"{suite}/{os.path.basename(file).removesuffix('.test')}"
-            for case in khronos_cases.read_cases(file, [group]):
-                if options.only in case.path:
-                    results.add(group, case.path, *worker.run(case))
-    sys.exit(0 if results.tell() else 1)
+def cases_of(checkout, folder):
+    suite = os.path.basename(folder.removesuffix("/shaders"))
+    files = sorted(glob.glob(os.path.join(checkout, folder, "*.test")))
+    if not files:
+        sys.exit(f"{checkout}/{folder} has no .test files")
+    for file in files:
+        group = f"{suite}/{os.path.basename(file).removesuffix('.test')}"
+        for case in khronos_cases.read_cases(file, [group]):
+            yield group, case.path, case
 
 
 if __name__ == "__main__":
-    main()
+    emulator.run_suite(__doc__, FOLDERS, KNOWN, run_case, cases_of)

@@ -10,7 +10,6 @@ that SOFTFOCUS_LIBRARY names, or that of a build in this checkout. The exit stat
 fails that is not in KNOWN.
 """
 
-import argparse
 import ctypes
 import glob
 import os
@@ -406,26 +405,15 @@ def run_case(gpu, case):
     return "passed", ""
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("checkout")
-    parser.add_argument("folder", nargs="*")
-    parser.add_argument("--only", default="")
-    options = parser.parse_args()
-    worker = emulator.Worker(emulator.find_library(), run_case)
-    results = emulator.Results(KNOWN)
-    for folder in options.folder or FOLDERS:
-        root = os.path.join(options.checkout, "tests", "spec", folder)
-        files = sorted(glob.glob(os.path.join(root, "**", "*.shader_test"), recursive=True))
-        if not files:
-            sys.exit(f"{root} has no .shader_test files")
-        for file in files:
-            path = f"{folder}/{os.path.relpath(file, root).removesuffix('.shader_test')}"
-            if options.only in path:
-                results.add(folder, path, *worker.run((path, sections_of(file))))
-    sys.exit(0 if results.tell() else 1)
+def cases_of(checkout, folder):
+    root = os.path.join(checkout, "tests", "spec", folder)
+    files = sorted(glob.glob(os.path.join(root, "**", "*.shader_test"), recursive=True))
+    if not files:
+        sys.exit(f"{root} has no .shader_test files")
+    for file in files:
+        path = f"{folder}/{os.path.relpath(file, root).removesuffix('.shader_test')}"
+        yield folder, path, (path, sections_of(file))
 
 
 if __name__ == "__main__":
-    main()
+    emulator.run_suite(__doc__, FOLDERS, KNOWN, run_case, cases_of)
