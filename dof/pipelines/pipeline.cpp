@@ -323,8 +323,10 @@ std::vector<UsualUniform> usual_uniforms() {
   ratio.steps.push_back({.op = ExpressionOp::divide});
   all.push_back({"ratio", {std::move(ratio)}});
   all.push_back({"iFrameRate", {constant_expression(kFramesPerSecond)}});
-  all.push_back({"iTime", {of(seconds)}});
-  all.push_back({"iFrame", {of(frame)}});
+  for (const std::string_view name : {"iTime", "time", "u_time", "uTime"}) {
+    all.push_back({name, {of(seconds)}});
+  }
+  for (const std::string_view name : {"iFrame", "u_frame"}) all.push_back({name, {of(frame)}});
   all.push_back({"cameraNear", {of(near_m)}});
   all.push_back({"cameraFar", {of(far_m)}});
   return all;

@@ -240,6 +240,42 @@ void check_varyings(const SpirvModule& vertex, const SpirvModule& fragment) {
   check_types(vertex, outputs, fragment, inputs);
 }
 
+/// Whether some instruction names gl_Position: by itself, or as a block's member.
+bool uses_position(const SpirvModule& module) {
+  const auto is_position = [](const SpirvDecorations& of) {
+    return of.builtin == static_cast<int>(SpirvBuiltin::position);
+  };
+  const auto names = [&](const SpirvInstruction& in, const SpirvVariable& variable) {
+    const auto at = std::find(in.operands.begin(), in.operands.end(), variable.id);
+    if (at == in.operands.end()) return false;
+    const auto found = module.decorations.find(module.type(variable.type).element);
+    const bool is_whole = in.op != SpirvOp::access_chain || std::next(at) == in.operands.end();
+    if (is_whole || found == module.decorations.end()) return true;
+    const auto member = module.constants.find(*std::next(at));
+    const std::vector<SpirvDecorations>& members = found->second.members;
+    return member == module.constants.end() || member->second.words.front() >= members.size() ||
+           is_position(members[member->second.words.front()]);
+  };
+  for (const auto& [id, variable] : module.variables) {
+    if (variable.storage != SpirvStorage::output) continue;
+    const auto own = module.decorations.find(id);
+    const auto block = module.decorations.find(module.type(variable.type).element);
+    const bool is_it = own != module.decorations.end() && is_position(own->second);
+    const bool has_it =
+        block != module.decorations.end() &&
+        std::any_of(block->second.members.begin(), block->second.members.end(), is_position);
+    if (!is_it && !has_it) continue;
+    for (const auto& [number, function] : module.functions) {
+      for (const SpirvBlock& in_block : function.blocks) {
+        for (const SpirvInstruction& in : in_block.instructions) {
+          if (names(in, variable)) return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
 /// What a uniform is unless it is set may stand in either shader.
 void share_initial_values(ShaderUniforms& vertex, ShaderUniforms& fragment) {
   for (const ShaderUniform& ours : vertex.all) {
@@ -286,6 +322,14 @@ void link_shaders(UserShader& vertex, UserShader& fragment) {
       fragment.module->stage != ShaderStage::fragment) {
     throw ShaderError("a vertex shader and a fragment shader are right, in this order");
   }
+  // Later versions and ES leave both open: a place, and what a pixel reads.
+  constexpr int kLastWithPlace = 130, kLastWithVaryings = 120;
+  const auto is_at_most = [](const UserShader& shader, int last) {
+    return shader.module->glsl_version != 0 && shader.module->glsl_version <= last;
+  };
+  if (is_at_most(vertex, kLastWithPlace) && !uses_position(*vertex.module)) {
+    throw ShaderError("the vertex shader never writes gl_Position; without it nothing is drawn");
+  }
   check_uniforms(*vertex.module, *fragment.module);
   share_initial_values(vertex.uniforms, fragment.uniforms);
   std::vector<ShaderPort> outputs = outputs_of(*vertex.module);
@@ -308,6 +352,10 @@ void link_shaders(UserShader& vertex, UserShader& fragment) {
         free += input.locations;
       }
       continue;
+    }
+    if (input.is_used && !found->is_used && is_at_most(fragment, kLastWithVaryings)) {
+      throw ShaderError("the vertex shader never writes " + named(*found) +
+                        ", which the fragment shader reads");
     }
     if (!fits(*found, input)) {
       throw ShaderError(named(input) + " has " + in_words(*found) + " in the vertex shader and " +

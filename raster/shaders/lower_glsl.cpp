@@ -43,8 +43,10 @@ ShaderOp plain_op(GlslOp op) {
     case log2: return To::logarithm_2;
     case sqrt: return To::square_root;
     case inverse_sqrt: return To::inverse_square_root;
-    case float_min: return To::minimum;
-    case float_max: return To::maximum;
+    case float_min:
+    case number_min: return To::minimum;
+    case float_max:
+    case number_max: return To::maximum;
     case unsigned_min: return To::minimum_unsigned;
     case signed_min: return To::minimum_signed;
     case unsigned_max: return To::maximum_unsigned;
@@ -98,17 +100,11 @@ ShaderValue Lowering::glsl_scalar(GlslOp op, ShaderValue a, ShaderValue b, Shade
   const auto clamp = [&](ShaderValue x, ShaderValue low, ShaderValue high) {
     return make(to, ShaderOp::minimum, make(to, ShaderOp::maximum, x, low), high);
   };
-  // NMin and NMax of SPIR-V, which HLSL becomes: if one is NaN, the other.
-  const auto of_numbers = [&](ShaderOp pick, ShaderValue x, ShaderValue y) {
-    return make(to, ShaderOp::select, make(to, ShaderOp::not_equal, x, x), y, make(to, pick, x, y));
-  };
   switch (op) {
-    case number_min: return of_numbers(ShaderOp::minimum, a, b);
-    case number_max: return of_numbers(ShaderOp::maximum, a, b);
     case radians: return multiply(a, constant(std::numbers::pi_v<float> / 180.0f));
     case degrees: return multiply(a, constant(180.0f / std::numbers::pi_v<float>));
-    case float_clamp: return clamp(a, b, c);
-    case number_clamp: return of_numbers(ShaderOp::minimum, of_numbers(ShaderOp::maximum, a, b), c);
+    case float_clamp:
+    case number_clamp: return clamp(a, b, c);
     case unsigned_clamp:
       return make(to, ShaderOp::minimum_unsigned, make(to, ShaderOp::maximum_unsigned, a, b), c);
     case signed_clamp:

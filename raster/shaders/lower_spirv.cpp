@@ -148,6 +148,11 @@ void Lowering::lower() {
   }
   Call main{.function = &module_.functions.at(module_.main)};
   run_call(main, tree_.main);
+  for (const ShaderVariable variable : clamped_colours_) {
+    const ShaderValue from_0 =
+        make(tree_.main, ShaderOp::maximum, get(tree_.main, variable), constant(0.0f));
+    set(tree_.main, variable, make(tree_.main, ShaderOp::minimum, from_0, constant(1.0f)));
+  }
 }
 
 void Lowering::add_inputs(SpirvId id, const SpirvDecorations& of) {
@@ -190,7 +195,9 @@ void Lowering::add_outputs(std::uint32_t first, SpirvId id, const SpirvDecoratio
     return;
   }
   const bool is_integer = has_integers(type(id));
+  const bool is_clamped = of.name == "gl_FrontColor" || of.name == "gl_FrontSecondaryColor";
   add_numbers(id, of, [&](int location, int component, int) {
+    if (is_clamped) clamped_colours_.push_back(first);
     tree_.outputs.push_back({of.builtin, location, component, first++, is_integer});
   });
 }

@@ -69,6 +69,7 @@ class Lowering {
   Words uniforms_;
   const std::vector<bool>& is_late_;
   ShaderTree& tree_;
+  std::vector<ShaderVariable> clamped_colours_{};
   std::uint32_t late_inputs_ = 0;  ///< the first input that is a uniform; the others follow
   std::map<SpirvId, Place> globals_{};
   std::vector<Target> targets_{};

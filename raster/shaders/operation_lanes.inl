@@ -132,8 +132,8 @@ SOFTFOCUS_INLINE Bits apply(Bits a, Bits b, Bits c) {
   if constexpr (op == Op::divide) return as_bits(x / y);
   if constexpr (op == Op::negate) return a ^ 0x80000000u;
   if constexpr (op == Op::absolute) return a & 0x7FFFFFFFu;
-  if constexpr (op == Op::minimum) return as_bits(smaller(y, x));
-  if constexpr (op == Op::maximum) return as_bits(select(x < y, y, x));
+  if constexpr (op == Op::minimum) return as_bits(select(x == x, smaller(y, x), y));
+  if constexpr (op == Op::maximum) return as_bits(select(x == x, select(x < y, y, x), y));
   if constexpr (op == Op::floor) return as_bits(floor(x));
   if constexpr (op == Op::ceiling) {
     return as_bits(floor(as_floats(a ^ 0x80000000u))) ^ 0x80000000u;

@@ -368,8 +368,12 @@ class Reader {
       case capability: check_capability(word(w, 0)); break;
       case variable: module_.variables[in.result] = variable_of(in); break;
       case SpirvOp::function: begin_function(in); break;
+      case source: {
+        constexpr std::uint32_t kGlsl = 2;
+        if (word(w, 0) == kGlsl) module_.glsl_version = static_cast<int>(word(w, 1) & 0xFFF);
+        break;
+      }
       case nop:
-      case source:
       case source_continued:
       case source_extension:
       case extension:

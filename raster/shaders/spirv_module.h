@@ -110,6 +110,7 @@ struct SpirvModule {
   ShaderStage stage{};
   SpirvId main = 0;
   bool origin_is_upper_left = false, depth_replacing = false;
+  int glsl_version = 0;  ///< 110 to 460; of ES and other languages 0
   std::map<SpirvId, SpirvType> types{};
   std::map<SpirvId, SpirvConstant> constants{};
   std::map<SpirvId, SpirvVariable> variables{};  ///< of the module

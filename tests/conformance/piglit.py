@@ -31,7 +31,6 @@ PASS_THROUGH = ("#if __VERSION__ >= 130\nin vec4 piglit_vertex;\n#else\n"
                 "attribute vec4 piglit_vertex;\n#endif\n"
                 "void main() { gl_Position = piglit_vertex; }\n")
 
-NAN = "min and max of a NaN and a number, which GLSL leaves open, give the first"
 PRECISION = "a uniform's precision means nothing: all is binary32"
 DENORMALS = "denormals are kept; the case expects 0 for 2^-149"
 INVARIANT = "invariant means nothing: all is"
@@ -39,18 +38,12 @@ CONSTANTS = "the compiler folds constants in its own way"
 
 # Parts of the paths of cases that fail, and why.
 KNOWN = {
-    "-nan-builtin-m": NAN,
-    "of_nan": NAN,
     "fs-underflow-": DENORMALS,
     "mismatched-uniform-precision": PRECISION,
     "coord-invariant": INVARIANT,
     "const-builtin-degrees": CONSTANTS,
     "glsl-const-folding-01": CONSTANTS,
     "-inline-explosion": "2^64 calls; functions are inlined, 64 deep",
-    "vs-loop-variable-iteration-limit-unroll": "min() of ints, which GLSL 1.10 has not",
-    "glsl-clamp-vertex-color": "gl_FrontColor is not clamped",
-    "gl_Position-not-written-check": "what is not written is 0",
-    "varying-read-but-not-written": "what is not written is 0",
     "interface-blocks-member-qualifier-mismatch": "the fragment shader's interpolation counts",
     "vs-out-conversion-int-to-float-vec4-index": "the compiler takes an out parameter's index "
                                                  "after the call",

@@ -13,6 +13,7 @@
 #include "scenes/files/file_bytes.h"
 #include "scenes/lens_views/lens_view_method.h"
 #include "scenes/load/load_scene.h"
+#include "scenes/load/pipeline_file.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
@@ -58,16 +59,45 @@ std::shared_ptr<bool> add_json_flag(CLI::App& parser) {
   return json;
 }
 
+Json parameter_json(std::string_view name, std::string_view summary, double least, double most,
+                    double preset) {
+  return {
+      {"name", name}, {"summary", summary}, {"least", least}, {"most", most}, {"default", preset}};
+}
+
+Row parameter_row(std::string_view name, std::string_view summary, double least, double most,
+                  double preset) {
+  return {"  " + std::string{name} + "=" + short_number(preset),
+          (summary.empty() ? "" : std::string{summary} + ", ") + short_number(least) + " to " +
+              short_number(most)};
+}
+
+int list_parameters(const std::string& file, bool json) {
+  if (!is_pipeline_name(file)) {
+    throw UsageError("'" + file + "' is no pipeline; FILE.toml would be right (docs/shaders.md)");
+  }
+  const Pipeline pipeline = read_pipeline(file).pipeline;
+  Json list = Json::array();
+  std::vector<Row> rows{{file, pipeline.summary}};
+  for (const PipelineParameter& of : pipeline.parameters) {
+    list.push_back(parameter_json(of.name, of.summary, of.least, of.most, of.value));
+    rows.push_back(parameter_row(of.name, of.summary, of.least, of.most, of.value));
+  }
+  if (json) {
+    std::cout << json_text(list, 2) << '\n';
+  } else {
+    print_aligned(rows);
+  }
+  return kDone;
+}
+
 Json effects_json() {
   Json list = Json::array();
   for (const Effect& effect : effects()) {
     Json parameters = Json::array();
     for (const Parameter& parameter : effect.parameters) {
-      parameters.push_back({{"name", parameter.name},
-                            {"summary", parameter.summary},
-                            {"least", parameter.least},
-                            {"most", parameter.most},
-                            {"default", parameter.preset}});
+      parameters.push_back(parameter_json(parameter.name, parameter.summary, parameter.least,
+                                          parameter.most, parameter.preset));
     }
     list.push_back({{"name", effect.name},
                     {"summary", effect.summary},
@@ -101,8 +131,12 @@ Command add_scenes_command(CLI::App& program) {
 Command add_methods_command(CLI::App& program) {
   CLI::App* parser =
       add_command(program, "methods", "List the depth-of-field methods: name, needs, summary");
+  const auto pipeline = std::make_shared<std::string>();
+  add_optional_argument(*parser, "PIPELINE.toml", "A pipeline, to list its parameters instead",
+                        *pipeline);
   const auto json = add_json_flag(*parser);
-  return {parser, [json] {
+  return {parser, [pipeline, json] {
+            if (!pipeline->empty()) return list_parameters(*pipeline, *json);
             std::vector<Row> rows;
             for (const Method& method : methods()) {
               rows.push_back({std::string{method.name}, std::string{method.needs},
@@ -136,10 +170,8 @@ Command add_effects_command(CLI::App& program) {
             for (const Effect& effect : effects()) {
               rows.push_back({std::string{effect.name}, std::string{effect.summary}});
               for (const Parameter& parameter : effect.parameters) {
-                rows.push_back(
-                    {"  " + std::string{parameter.name} + "=" + short_number(parameter.preset),
-                     std::string{parameter.summary} + ", " + short_number(parameter.least) +
-                         " to " + short_number(parameter.most)});
+                rows.push_back(parameter_row(parameter.name, parameter.summary, parameter.least,
+                                             parameter.most, parameter.preset));
               }
             }
             print_aligned(rows);

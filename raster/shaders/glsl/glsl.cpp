@@ -116,7 +116,8 @@ void add_messages(std::string_view log, const std::string& name, Messages& messa
   throw ShaderError(why);
 }
 
-/// Drivers know no names in `#line`, and want `#extension` before all else.
+/// Drivers know no names in `#line`, and want `#extension` before all else. Mesa's compute
+/// `mediump` of ES with halves; here it is binary32.
 std::string text_for_drivers(const GlslText& text) {
   std::string extensions, rest;
   int conditions = 0;
@@ -137,6 +138,7 @@ std::string text_for_drivers(const GlslText& text) {
     }
   };
   for (const std::string* part : {&text.before, &text.text, &text.after}) add(*part);
+  if (text.taken_as.is_es) extensions += "#define mediump highp\n#define lowp highp\n";
   return text.version.substr(std::min(text.version.find('#'), text.version.size())) + extensions +
          rest;
 }
@@ -208,7 +210,11 @@ CompiledGlsl compile_glsl(const GlslSource& source, const GlslReader& read) {
     // Which functions a constant may be made with; since 4.20 any.
     constexpr int kInitialisers = 420;
     const bool is_constant = why.find("'non-constant initializer'") != std::string_view::npos;
-    GlslText raised = glsl_text(source, read, true, is_constant ? kInitialisers : 0);
+    // min() and the like of ints are there since 1.30, the compatibility profile since 1.50.
+    constexpr int kFunctionsOfInts = 150;
+    const bool is_function = why.find("no matching overloaded function") != std::string_view::npos;
+    const int least = is_constant ? kInitialisers : is_function ? kFunctionsOfInts : 0;
+    GlslText raised = glsl_text(source, read, true, least);
     if (!is_relaxable && !raised.is_raised) throw;
     try {
       return compiled(source, std::move(raised), is_relaxable);

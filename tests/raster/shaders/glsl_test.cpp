@@ -507,6 +507,14 @@ TEST_CASE("what glslang would take its stack or minutes for is refused with its 
         "mine.frag: too many comparisons for arrays or structures of that size");
 }
 
+TEST_CASE("functions of ints are there in the oldest versions, as drivers have them") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  CHECK(error_of_text("#version 110\nuniform int n;\n"
+                      "void main() { gl_FragColor = vec4(float(min(n, 4))); }\n") == "none");
+  CHECK(error_of_text("#version 110\nvoid main() { gl_FragColor = vec4(nothing(4)); }\n")
+            .find("'nothing'") != std::string::npos);
+}
+
 TEST_CASE("threads compile at once, each to the same words" * doctest::test_suite("threads")) {
   if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
   const auto expected = compiled_text(kOldBody).words;

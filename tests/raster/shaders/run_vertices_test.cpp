@@ -201,6 +201,18 @@ void main() { gl_FragColor = gl_Color + gl_TexCoord[0]; })",
   CHECK(find(from, "gl_TexCoord") == find(to, "gl_TexCoord"));
   CHECK(find(from, "gl_TexCoord") != find(from, "gl_FrontColor"));
   CHECK(find(from, "gl_TexCoord") >= 0);
+  // Colours are clamped at the vertex.
+  const float tint[] = {-1.0f, 0.5f, 3.0f, 1.0f};
+  const VertexAttribute attributes[] = {{find(inputs_of(*vertex.module), "gl_Color"), 4,
+                                         reinterpret_cast<const std::byte*>(tint), 16}};
+  const int location = find(from, "gl_FrontColor");
+  const ShaderVarying varyings[] = {{location, 0}, {location, 1}, {location, 2}, {location, 3}};
+  std::array<std::uint32_t, 4> values{};
+  ThreadPool pool{1};
+  run_vertices(
+      compile_shader(vertex, vertex.uniforms.words),
+      {.vertex_count = 1, .attributes = attributes, .varyings = varyings, .values = values}, pool);
+  CHECK(std::bit_cast<std::array<float, 4>>(values) == std::array{0.0f, 0.5f, 1.0f, 1.0f});
 }
 
 TEST_CASE("errors of linking name the varying that does not fit") {
@@ -229,6 +241,24 @@ void main() { gl_Position = vec4(position, 1.0); uv = position.xy; })";
   CHECK(error("flat in ivec2 uv;", "vec4(uv, uv)") ==
         "'uv' has 2 floats in the vertex shader and 2 integers in the fragment shader; they must "
         "be equal");
+  const auto old_error = [](const std::string& writes) {
+    UserShader before = shader_of("#version 120\nvarying vec4 v;\nvoid main() { " + writes + " }\n",
+                                  ShaderStage::vertex);
+    UserShader after =
+        shader_of("#version 120\nvarying vec4 v;\nvoid main() { gl_FragColor = v; }\n",
+                  ShaderStage::fragment);
+    try {
+      link_shaders(before, after);
+    } catch (const ShaderError& caught) {
+      return std::string{caught.what()};
+    }
+    return std::string{};
+  };
+  CHECK(old_error("gl_Position.x = 1.0; v = gl_Vertex;").empty());
+  CHECK(old_error("gl_FrontColor = v = gl_Vertex;") ==
+        "the vertex shader never writes gl_Position; without it nothing is drawn");
+  CHECK(old_error("gl_Position = gl_Vertex;") ==
+        "the vertex shader never writes 'v', which the fragment shader reads");
   UserShader vertex = shader_of(vertex_text, ShaderStage::vertex);
   UserShader other = shader_of(vertex_text, ShaderStage::vertex);
   CHECK_THROWS_WITH_AS(link_shaders(vertex, other),
