@@ -73,7 +73,8 @@ Texture cut_input(const Pipeline& pipeline, TextureShape shape, const PipelineIn
   const Image& picture = flat.levels[0];
   // Slices have their first row at v = 0 in every convention, as textures of data have.
   Texture cut = cut_texture(pipeline.by_codes ? upside_down(picture) : picture, shape);
-  if (flat.levels.size() > 1) generate_mipmaps(cut, {});
+  const bool has_levels = flat.levels.size() > 1 || input.sampler.filter == Filter::trilinear;
+  if (has_levels) generate_mipmaps(cut, {});
   return cut;
 }
 

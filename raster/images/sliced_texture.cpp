@@ -204,24 +204,31 @@ int nearest_layer(const Texture& texture, float at, const Profile& profile) {
 
 namespace {
 
-/// As of flat textures: only drivers flush between the steps.
-struct Mix {
+// As of flat textures: only drivers flush between the steps.
+
+struct UnfusedMix {
+  float operator()(float a, float b, float t) const { return lerp(a, b, t, Contraction::unfused); }
+};
+struct FusedMix {
+  float operator()(float a, float b, float t) const { return lerp(a, b, t, Contraction::fused); }
+};
+struct DriverMix {
   const Profile& profile;
-  float operator()(float a, float b, float t) const {
-    return profile.texture_unit == TextureUnit::standard ? lerp(a, b, t, profile.lerp)
-                                                         : lerp(a, b, t, profile);
-  }
+  float operator()(float a, float b, float t) const { return lerp(a, b, t, profile); }
 };
 
 /// One level of a volume or cube, by a profile's unit.
+template <class Mix>
 class LevelFilter {
  public:
-  LevelFilter(const Texture& texture, const Sampler& sampler, const Profile& profile)
+  LevelFilter(const Texture& texture, const DecodedTexture* decoded, const Sampler& sampler,
+              const Profile& profile, Mix mix)
       : texture_(texture),
+        decoded_(decoded != nullptr && !decoded->texels.empty() ? decoded : nullptr),
         sampler_(sampler),
         profile_(profile),
         is_llvmpipe_(profile.texture_unit == TextureUnit::llvmpipe),
-        mix_{profile} {}
+        mix_(mix) {}
 
   LevelChoice levels(float lod) const {
     if (is_llvmpipe_) return llvmpipe_levels(lod, texture_.levels.size(), sampler_.filter);
@@ -303,6 +310,7 @@ class LevelFilter {
 
  private:
   const Texture& texture_;
+  const DecodedTexture* decoded_;
   const Sampler& sampler_;
   const Profile& profile_;
   bool is_llvmpipe_;
@@ -322,25 +330,22 @@ class LevelFilter {
                         : standard_nearest(at, size, wrap);
   }
   glm::vec4 texel(int slice, std::size_t level, int x, int y) const {
-    return fetch_texel(slice_level(texture_, slice, level), x, y, profile_);
+    if (decoded_ == nullptr) {
+      return fetch_texel(slice_level(texture_, slice, level), x, y, profile_);
+    }
+    const Image& image = texture_.levels[level];
+    const auto row = static_cast<std::size_t>(slice) * static_cast<std::size_t>(image.height) +
+                     static_cast<std::size_t>(y);
+    const float* at =
+        decoded_->texels.data() + decoded_->starts[level] +
+        4 * (row * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x));
+    return {at[0], at[1], at[2], at[3]};
   }
 };
 
-}  // namespace
-
-glm::vec4 sample_sliced(const Texture& texture, const Sampler& sampler, glm::vec3 at, float lod,
-                        const Profile& profile) {
-  if (texture.shape == TextureShape::array) {
-    const int layer = nearest_layer(texture, at.z, profile);
-    const Texture& flat =
-        layer == 0 ? texture : texture.behind[static_cast<std::size_t>(layer) - 1];
-    return sample(flat, sampler, {at.x, at.y}, lod, profile);
-  }
-  if (profile.texture_unit != TextureUnit::standard) {
-    for (int i = 0; i < 3; ++i) at[i] = flush_denormal(at[i], profile.denormals);
-    lod = flush_denormal(lod, profile.denormals);
-  }
-  const LevelFilter filter{texture, sampler, profile};
+template <class Mix>
+glm::vec4 filter_levels(const LevelFilter<Mix>& filter, const Texture& texture,
+                        const Sampler& sampler, glm::vec3 at, float lod) {
   const bool is_cube = texture.shape == TextureShape::cube;
   const CubePlace place = is_cube ? cube_place(at) : CubePlace{};
   const auto level = [&](std::size_t number) {
@@ -355,6 +360,28 @@ glm::vec4 sample_sliced(const Texture& texture, const Sampler& sampler, glm::vec
   if (!(levels.next_weight > 0.0f)) return with_missing_channels(fine, format);
   return with_missing_channels(filter.mix_levels(fine, level(levels.first + 1), levels.next_weight),
                                format);
+}
+
+}  // namespace
+
+glm::vec4 sample_sliced(const Texture& texture, const Sampler& sampler, glm::vec3 at, float lod,
+                        const Profile& profile, const DecodedTexture* decoded) {
+  if (texture.shape == TextureShape::array) {
+    const int layer = nearest_layer(texture, at.z, profile);
+    const Texture& flat =
+        layer == 0 ? texture : texture.behind[static_cast<std::size_t>(layer) - 1];
+    return sample(flat, sampler, {at.x, at.y}, lod, profile);
+  }
+  const auto filtered = [&](auto mix) {
+    const LevelFilter filter{texture, decoded, sampler, profile, mix};
+    return filter_levels(filter, texture, sampler, at, lod);
+  };
+  if (profile.texture_unit == TextureUnit::standard) {
+    return profile.lerp == Contraction::fused ? filtered(FusedMix{}) : filtered(UnfusedMix{});
+  }
+  for (int i = 0; i < 3; ++i) at[i] = flush_denormal(at[i], profile.denormals);
+  lod = flush_denormal(lod, profile.denormals);
+  return filtered(DriverMix{profile});
 }
 
 float sliced_level_of_detail(const Texture& texture, glm::vec3 at, glm::vec3 per_x, glm::vec3 per_y,

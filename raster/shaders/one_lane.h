@@ -11,12 +11,14 @@ namespace softfocus {
 /// The registers of one lane.
 struct Lane {
   const LaneFrame& frame;
-  int unit_lanes, lane;
+  int unit_lanes, lane;  ///< the first a power of two
 
   std::byte* place(const LaneSample::At& at, int of) const {
-    const auto vector = static_cast<std::size_t>(of / unit_lanes);
+    // A division would take longer than all else here.
+    const int shift = std::countr_zero(static_cast<unsigned>(unit_lanes));
+    const auto vector = static_cast<std::size_t>(of >> shift);
     return frame.memory + at.place + vector * at.next +
-           static_cast<std::size_t>(of % unit_lanes) * 4;
+           static_cast<std::size_t>(of & (unit_lanes - 1)) * 4;
   }
   std::uint32_t bits(const LaneSample::At& at) const { return bits_of(at, lane); }
   std::uint32_t bits_of(const LaneSample::At& at, int of) const {

@@ -65,7 +65,6 @@ void ShaderBatches::decode_textures() {
   decoded_.reserve(textures_.size());
   for (ShaderTexture& of : textures_) {
     if (of.texture == nullptr || of.decoded != nullptr) continue;
-    if (of.texture->shape != TextureShape::flat) continue;
     const bool is_half = of.texture->levels[0].format == Format::rgba16f;
     if (!filters && (!fetches || is_half)) continue;
     const auto same =
