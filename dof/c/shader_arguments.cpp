@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "raster/images/sliced_texture.h"
 #include "raster/shaders/link_shaders.h"
 
 namespace softfocus {
@@ -33,9 +34,8 @@ struct CheckedTexels {
   MemoryRange range{};
 };
 
-CheckedTexels checked_texels(const std::string& name, const softfocus_texels* from,
+CheckedTexels checked_texels(const std::string& name, const softfocus_texels& texels,
                              bool is_written) {
-  const auto texels = read_struct(name, from);
   const auto is_side = [](std::int32_t side) { return side >= 1 && side <= kMaxImageSize; };
   if (!is_side(texels.width) || !is_side(texels.height)) {
     refuse(name, "its width and height are " + std::to_string(texels.width) + " and " +
@@ -145,8 +145,39 @@ Wrap wrap_of(const std::string& name, std::int32_t wrap) {
 
 }  // namespace
 
-ImageView read_texels(const std::string& name, const softfocus_texels* texels) {
-  return checked_texels(name, texels, false).view;
+std::vector<ImageView> read_slices(const std::string& name, const softfocus_texels* from,
+                                   const ShaderUniform& sampler) {
+  auto texels = read_struct(name, from);
+  const std::int32_t count = texels.slices == 0 ? 1 : texels.slices;
+  const std::string reader =
+      "; '" + sampler.name + "' is a " + std::string{sampler_name(sampler.shape)};
+  const auto refuse_slices = [&](const std::string& right) {
+    refuse(name + ".slices", std::to_string(texels.slices) + reader + right);
+  };
+  if (sampler.shape == TextureShape::flat && count != 1) refuse_slices(", and reads one");
+  if (sampler.shape == TextureShape::cube && count != 6) refuse_slices(", and reads six faces");
+  if (count < 1 || count > kMaxImageSize) {
+    refuse_slices(", and reads 1 to " + std::to_string(kMaxImageSize));
+  }
+  if (sampler.shape == TextureShape::cube && texels.width != texels.height) {
+    refuse(name, "its width and height are " + std::to_string(texels.width) + " and " +
+                     std::to_string(texels.height) + reader + ", of square faces");
+  }
+  std::vector<ImageView> slices{checked_texels(name, texels, false).view};
+  std::ptrdiff_t next = texels.slice_bytes;
+  if (next == 0) next = slices[0].stride_bytes * texels.height;
+  const auto texel = static_cast<std::ptrdiff_t>(bytes_per_texel(slices[0].format));
+  const std::string stride = name + ".slice_bytes";
+  range_of({stride, texels.first, texel, next, texel}, 1, count);
+  if (next % (texel / channel_count(slices[0].format)) != 0) {
+    refuse(stride, std::to_string(next) + " is no multiple of a channel's bytes");
+  }
+  slices.reserve(static_cast<std::size_t>(count));
+  for (std::int32_t i = 1; i < count; ++i) {
+    texels.first = static_cast<std::byte*>(texels.first) + next;
+    slices.push_back(checked_texels(name, texels, false).view);
+  }
+  return slices;
 }
 
 ShaderTexture read_sampler(const softfocus_sampler* from) {
@@ -160,6 +191,7 @@ ShaderTexture read_sampler(const softfocus_sampler* from) {
                                        "SOFTFOCUS_NEAREST, BILINEAR and TRILINEAR");
   read.sampler.wrap_u = wrap_of("sampler.wrap_u", sampler.wrap_u);
   read.sampler.wrap_v = wrap_of("sampler.wrap_v", sampler.wrap_v);
+  read.sampler.wrap_w = wrap_of("sampler.wrap_w", sampler.wrap_w);
   read.compare = one_of<Compare>("sampler.compare", sampler.compare, Compare::less_equal,
                                  {{SOFTFOCUS_NEVER, Compare::never},
                                   {SOFTFOCUS_LESS, Compare::less},
@@ -195,7 +227,9 @@ ReadPass read_pass(const softfocus_pass* from) {
     read.targets.emplace_back();
     if (pass.targets[i] == nullptr) continue;
     const std::string name = "pass.targets[" + std::to_string(i) + "]";
-    const CheckedTexels texels = checked_texels(name, pass.targets[i], true);
+    const auto target = read_struct(name, pass.targets[i]);
+    if (target.slices > 1) refuse(name + ".slices", "a target has one");
+    const CheckedTexels texels = checked_texels(name, target, true);
     for (const ImageView& other : read.targets) {
       if (other.texels != nullptr &&
           (other.width != texels.view.width || other.height != texels.view.height)) {

@@ -12,8 +12,9 @@
 
 namespace softfocus {
 
-/// Texels to read.
-ImageView read_texels(const std::string& name, const softfocus_texels* texels);
+/// Texels to read for that sampler, slice by slice.
+std::vector<ImageView> read_slices(const std::string& name, const softfocus_texels* texels,
+                                   const ShaderUniform& sampler);
 
 /// How a texture is sampled, without the texture.
 ShaderTexture read_sampler(const softfocus_sampler* sampler);

@@ -15,7 +15,7 @@
 #include "dof/c/context.h"
 #include "dof/c/settings.h"
 #include "dof/c/shader_arguments.h"
-#include "raster/images/sampler.h"
+#include "raster/images/sliced_texture.h"
 #include "raster/shaders/draw_shaders.h"
 #include "raster/shaders/glsl/glsl.h"
 #include "raster/shaders/link_shaders.h"
@@ -218,15 +218,15 @@ int softfocus_set_texture(softfocus_context* context, softfocus_shader* shader, 
   return guarded(context, [&](ThreadPool& pool) {
     softfocus_shader& to = given(shader);
     const auto [uniform, element] = named(to, name, true);
-    if (uniform.dim != SpirvDim::two && uniform.dim != SpirvDim::one &&
-        uniform.dim != SpirvDim::rectangle) {
-      refuse("name", "'" + uniform.name +
-                         "' is a cube or has layers; textures of two dimensions are there");
-    }
-    const ImageView from = read_texels("texels", texels);
+    const std::vector<ImageView> from = read_slices("texels", texels, uniform);
     const ShaderTexture chosen = read_sampler(sampler);
-    Texture made = make_texture(make_image(from.format, from.width, from.height));
-    copy_rows(from, made.levels.front(), pool);
+    std::vector<Image> slices;
+    slices.reserve(from.size());
+    for (const ImageView& slice : from) {
+      slices.push_back(make_image(slice.format, slice.width, slice.height));
+      copy_rows(slice, slices.back(), pool);
+    }
+    Texture made = make_sliced_texture(uniform.shape, std::move(slices));
     if (chosen.sampler.filter == Filter::trilinear) generate_mipmaps(made, {});
     const std::size_t number = to.shader.uniforms.words[uniform.first + element];
     to.textures[number] = std::move(made);

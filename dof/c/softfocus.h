@@ -210,7 +210,10 @@ typedef struct softfocus_texels {
   int32_t height;
   int32_t format; /* a softfocus_format */
   void* first;
-  ptrdiff_t row_bytes; /* from a row to the next, of either sign; 0: without a gap */
+  ptrdiff_t row_bytes;   /* from a row to the next, of either sign; 0: without a gap */
+  int32_t slices;        /* of a texture to read: layers, slices of a volume, or the six faces of a
+                            cube, +x, -x, +y, -y, +z, -z; 0: one */
+  ptrdiff_t slice_bytes; /* from a slice to the next, of either sign; 0: without a gap */
 } softfocus_texels;
 
 /* How a texture is sampled. What is 0 is as stands in brackets. */
@@ -220,6 +223,7 @@ typedef struct softfocus_sampler {
   int32_t wrap_u;     /* a softfocus_wrap [SOFTFOCUS_REPEAT] */
   int32_t wrap_v;
   int32_t compare; /* a softfocus_compare [SOFTFOCUS_LESS_EQUAL] */
+  int32_t wrap_w;  /* of a volume */
 } softfocus_sampler;
 
 /* What vertices are given at an input of a vertex shader. */

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "dof/pipelines/picture_codes.h"
+#include "dof/pipelines/pipeline_textures.h"
 #include "raster/images/texel.h"
 #include "raster/threads/loops.h"
 
@@ -102,39 +103,6 @@ std::shared_ptr<const ShaderProgram> program_of(const Pipeline& pipeline, std::s
 }
 
 // --- textures ---
-
-void bind_rest(Pipeline& pipeline, PipelinePass& pass, const ShaderProgram& program,
-               std::string_view how_to_name) {
-  const std::vector<bool> used = sampled_textures(program, pass.shader.uniforms.texture_count);
-  std::string left;
-  for (const ShaderUniform& of : pass.shader.uniforms.all) {
-    if (of.kind != SpirvKind::sampled_image) continue;
-    const std::uint32_t number = pass.shader.uniforms.words[of.first];
-    const bool is_flat =
-        of.dim == SpirvDim::two || of.dim == SpirvDim::one || of.dim == SpirvDim::rectangle;
-    if (!is_flat && used[number]) {
-      fail(pass, "the shader's texture '" + of.name +
-                     "' is a cube or has layers; textures of two dimensions are there");
-    }
-    const bool is_bound =
-        std::any_of(pass.inputs.begin(), pass.inputs.end(),
-                    [&](const PipelineInput& input) { return input.texture == number; });
-    if (is_bound) continue;
-    std::optional<PipelineInput> input = source_named(pipeline, of.name);
-    if (!input) {
-      input = PipelineInput{};
-      if (used[number]) {
-        if (!left.empty()) {
-          throw UnnamedTextures(pass.where + ": the shader reads textures '" + left + "' and '" +
-                                of.name + "'; " + std::string{how_to_name});
-        }
-        left = of.name;
-      }
-    }
-    input->texture = number;
-    pass.inputs.push_back(*input);
-  }
-}
 
 /// Of zeros, or, unless they are wanted, of what it held before.
 Image take_image(const Pipeline& pipeline, Format format, int width, int height, bool of_zeros) {
@@ -415,7 +383,7 @@ void finish_pipeline(Pipeline& pipeline, std::string_view how_to_name) {
   value_in(values, PipelineValue::pass_width) = value_in(values, PipelineValue::pass_height) = 64.0;
   for (std::size_t i = 0; i < pipeline.passes.size(); ++i) {
     PipelinePass& pass = pipeline.passes[i];
-    bind_rest(pipeline, pass, *program_of(pipeline, i, words_of(pass, values)), how_to_name);
+    bind_textures(pipeline, pass, *program_of(pipeline, i, words_of(pass, values)), how_to_name);
   }
 }
 

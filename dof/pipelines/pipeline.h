@@ -75,7 +75,7 @@ struct PipelineInput {
   std::uint32_t texture = 0;  ///< the shader's number of it
   PipelineSource source{};
   std::size_t number = 0, output = 0;
-  Sampler sampler{Filter::bilinear, Wrap::clamp_to_edge, Wrap::clamp_to_edge};
+  Sampler sampler{Filter::bilinear, Wrap::clamp_to_edge, Wrap::clamp_to_edge, Wrap::clamp_to_edge};
 };
 
 /// A uniform's numbers: one for each of its words, one for all, or one for each row of a vector.

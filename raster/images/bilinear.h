@@ -3,6 +3,8 @@
 
 #include <glm/vec4.hpp>
 
+#include "raster/images/sampler.h"
+
 namespace softfocus {
 
 /// The two texels that a bilinear fetch reads along one axis, and the second's weight.
@@ -11,6 +13,11 @@ struct Taps {
   int second;
   float weight;
 };
+
+/// The standard unit's, along an axis of `size` texels, as sample() says; and the texel that its
+/// nearest fetch reads.
+Taps standard_taps(float coordinate, int size, Wrap wrap, BilinearWeights weights);
+int standard_nearest(float coordinate, int size, Wrap wrap);
 
 /// mix(a, b, t) of each component.
 template <class Mix>

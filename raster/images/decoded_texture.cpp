@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "raster/images/integer_filter.h"
+#include "raster/images/sliced_texture.h"
 #include "raster/images/texel.h"
 #include "raster/numbers/lerp.h"
 #include "raster/numbers/srgb.h"
@@ -109,6 +110,12 @@ void decode_floats(const Image& image, Isa isa, float* to) {
   }
 }
 
+/// Texels of 32 bits may be subnormal. Only sample() flushes them.
+bool flushes_texels(Format format, const Profile& profile) {
+  return profile.denormals == Denormals::flush &&
+         (format == Format::r32f || format == Format::rgba32f);
+}
+
 void add_level(DecodedAxis& axis, std::size_t level, int size) {
   const bool is_power_of_two = std::has_single_bit(static_cast<unsigned>(size));
   axis.sizes[level] = static_cast<float>(size);
@@ -131,26 +138,32 @@ DecodedTexture decode_texture(const Texture& texture, const Profile& profile, Is
   if (profile.texture_unit == TextureUnit::softpipe || texture.levels.size() > kMaxDecodedLevels) {
     return decoded;
   }
+  const bool is_flat = texture.shape == TextureShape::flat;
+  if (!is_flat && flushes_texels(texture.levels[0].format, profile)) return decoded;
   std::size_t floats = 0;
   for (std::size_t i = 0; i < texture.levels.size(); ++i) {
     const Image& image = texture.levels[i];
     decoded.starts[i] = static_cast<std::int32_t>(floats);
     add_level(decoded.u, i, image.width);
     add_level(decoded.v, i, image.height);
-    floats += texel_floats(image);
+    floats += texel_floats(image) * static_cast<std::size_t>(slice_count(texture, i));
   }
   if (floats > std::numeric_limits<std::int32_t>::max()) return decoded;
   decoded.texels.resize(floats);
 
   const Format format = texture.levels[0].format;
-  decoded.are_whole = stay_whole(format, profile);
+  decoded.are_whole = is_flat && stay_whole(format, profile);
   const Codes codes = is_8_bit(format) ? codes_for(format, decoded.are_whole, profile) : Codes{};
   for (std::size_t i = 0; i < texture.levels.size(); ++i) {
     float* to = decoded.texels.data() + decoded.starts[i];
-    if (is_8_bit(format)) {
-      decode_8_bit(texture.levels[i], codes, to);
-    } else {
-      decode_floats(texture.levels[i], isa, to);
+    for (int slice = 0; slice < slice_count(texture, i); ++slice) {
+      const Image& image = slice_level(texture, slice, i);
+      if (is_8_bit(format)) {
+        decode_8_bit(image, codes, to);
+      } else {
+        decode_floats(image, isa, to);
+      }
+      to += texel_floats(image);
     }
   }
   return decoded;
@@ -170,9 +183,9 @@ LaneArithmetic lane_arithmetic(const DecodedTexture& texture, const Sampler& sam
     return profile.bilinear_weights == BilinearWeights::fixed_8 ? LaneArithmetic::standard_fixed_8
                                                                 : LaneArithmetic::standard;
   }
-  // Texels of 32 bits may be subnormal. Only sample() flushes them.
-  const bool flushes_texels = format == Format::r32f || format == Format::rgba32f;
-  if (profile.denormals == Denormals::keep || flushes_texels) return LaneArithmetic::by_sample;
+  if (profile.denormals == Denormals::keep || flushes_texels(format, profile)) {
+    return LaneArithmetic::by_sample;
+  }
   if (profile.texture_unit == TextureUnit::swiftshader) {
     return fused ? LaneArithmetic::by_sample : LaneArithmetic::swiftshader;
   }

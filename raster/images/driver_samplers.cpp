@@ -23,13 +23,9 @@ float mirror(float coordinate) {
   return distance > 0.0f ? distance : 0.0f;
 }
 
-// The level that a lod reads, and the weight of the next one.
-struct Levels {
-  std::size_t first;
-  float next_weight;
-};
+}  // namespace
 
-Levels choose_levels(float lod, std::size_t level_count, Filter filter) {
+LevelChoice llvmpipe_levels(float lod, std::size_t level_count, Filter filter) {
   const auto last = static_cast<std::int32_t>(level_count - 1);
   if (filter != Filter::trilinear) {
     return {static_cast<std::size_t>(std::clamp(round_to_int(lod), 0, last)), 0.0f};
@@ -40,8 +36,6 @@ Levels choose_levels(float lod, std::size_t level_count, Filter filter) {
   if (level >= last) return {static_cast<std::size_t>(last), 0.0f};
   return {static_cast<std::size_t>(level), lod - base};
 }
-
-}  // namespace
 
 Taps llvmpipe_taps(float coordinate, int size, int base_size, Wrap wrap) {
   const auto length = static_cast<float>(size);
@@ -95,7 +89,7 @@ glm::vec4 sample_llvmpipe(const Texture& texture, const Sampler& sampler, glm::v
   // Only these can be subnormal, and only floor() tells them from 0.
   uv = {flush_denormal(uv.x, profile.denormals), flush_denormal(uv.y, profile.denormals)};
   lod = flush_denormal(lod, profile.denormals);
-  const Levels levels = choose_levels(lod, texture.levels.size(), sampler.filter);
+  const LevelChoice levels = llvmpipe_levels(lod, texture.levels.size(), sampler.filter);
 
   if (sampler.filter == Filter::nearest) {
     const Image& image = texture.levels[levels.first];

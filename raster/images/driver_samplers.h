@@ -21,6 +21,13 @@ namespace softfocus {
 glm::vec4 sample_llvmpipe(const Texture& texture, const Sampler& sampler, glm::vec2 uv, float lod,
                           const Profile& profile);
 
+/// The level that a lod reads, and the weight of the next one.
+struct LevelChoice {
+  std::size_t first;
+  float next_weight;
+};
+LevelChoice llvmpipe_levels(float lod, std::size_t level_count, Filter filter);
+
 /// The texels that the float filter reads along an axis. The level has `size` texels, level 0
 /// `base_size`. If that is no power of two, repeating textures take another path, which first
 /// subtracts the coordinate's whole part.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "raster/images/sliced_texture.h"
 #include "raster/numbers/fixed_point.h"
 #include "raster/numbers/half.h"
 #include "raster/numbers/lerp.h"
@@ -49,6 +50,16 @@ Texel8 lerp4(const Texel8& a, const Texel8& b, int weight) {
   return result;
 }
 
+/// Of slices that lie about a place of a volume's level.
+template <class Slice>
+Texel8 mix_slices(const Texture& volume, const Sampler& sampler, float w, std::size_t level,
+                  const Slice& slice) {
+  const IntegerTaps taps =
+      taps8(w, slice_count(volume, level), slice_count(volume), sampler.wrap_w);
+  return lerp4(slice(slice_level(volume, taps.first, level)),
+               slice(slice_level(volume, taps.second, level)), taps.weight);
+}
+
 Texel8 bilinear(const Image& image, const Image& base, const Sampler& sampler, glm::vec2 uv) {
   const IntegerTaps u = taps8(uv.x, image.width, base.width, sampler.wrap_u);
   const IntegerTaps v = taps8(uv.y, image.height, base.height, sampler.wrap_v);
@@ -68,14 +79,18 @@ bool is_filtered_in_integers(Format format, const Sampler& sampler) {
          has_path(sampler.wrap_v);
 }
 
-glm::vec4 sample_unorm8(const Texture& texture, const Sampler& sampler, glm::vec2 uv,
-                        std::size_t level, float next_weight) {
-  Texel8 colour = bilinear(texture.levels[level], texture.levels[0], sampler, uv);
+glm::vec4 sample_slices_unorm8(const Texture& texture, const Sampler& sampler, glm::vec3 at,
+                               std::size_t level, float next_weight) {
+  const auto slice = [&](const Image& image) {
+    return bilinear(image, texture.levels[0], sampler, {at.x, at.y});
+  };
+  const auto of_level = [&](std::size_t number) {
+    return texture.shape == TextureShape::volume ? mix_slices(texture, sampler, at.z, number, slice)
+                                                 : slice(texture.levels[number]);
+  };
+  Texel8 colour = of_level(level);
   const int weight = static_cast<int>(next_weight * 256.0f);
-  if (weight > 0) {
-    const Image& next = texture.levels[level + 1];
-    colour = lerp4(colour, bilinear(next, texture.levels[0], sampler, uv), weight);
-  }
+  if (weight > 0) colour = lerp4(colour, of_level(level + 1), weight);
   const auto decode = [&](std::size_t i) {
     return unorm8_by_reciprocal(static_cast<std::uint8_t>(colour[i]));
   };

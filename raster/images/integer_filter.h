@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 #include "raster/images/image.h"
@@ -20,9 +21,14 @@ bool is_filtered_in_integers(Format format, const Sampler& sampler);
 
 /// A bilinear fetch from level `level`, mixed with the next level by `next_weight`: 0 <= weight
 /// < 1, cut to 8 bits; 0 reads one level. Values are rounded to 8 bits after each row, between
-/// rows and between levels, and scaled by 1/255 at the end.
-glm::vec4 sample_unorm8(const Texture& texture, const Sampler& sampler, glm::vec2 uv,
-                        std::size_t level, float next_weight);
+/// rows, between a volume's slices and between levels, and scaled by 1/255 at the end. `at`: u, v,
+/// and w of a volume.
+glm::vec4 sample_slices_unorm8(const Texture& texture, const Sampler& sampler, glm::vec3 at,
+                               std::size_t level, float next_weight);
+inline glm::vec4 sample_unorm8(const Texture& texture, const Sampler& sampler, glm::vec2 uv,
+                               std::size_t level, float next_weight) {
+  return sample_slices_unorm8(texture, sampler, {uv.x, uv.y, 0.0f}, level, next_weight);
+}
 
 // The standard texture unit's integer filter, for linear bytes and halves: 8-bit weights, exact
 // sums (integer_bilinear.h), one rounding.

@@ -11,6 +11,7 @@
 #include "raster/images/bilinear.h"
 #include "raster/images/driver_samplers.h"
 #include "raster/images/integer_filter.h"
+#include "raster/images/sliced_texture.h"
 #include "raster/images/texel.h"
 #include "raster/numbers/exact_math.h"
 #include "raster/numbers/lerp.h"
@@ -87,6 +88,7 @@ float level_of_detail(const Texture& texture, glm::vec2 uv_per_x, glm::vec2 uv_p
 
 void generate_mipmaps(Texture& texture, const Profile& profile) {
   assert(!texture.levels.empty());
+  if (texture.shape != TextureShape::flat) return generate_sliced_mipmaps(texture, profile);
   texture.levels.resize(1);
   for (;;) {
     const Image& fine = texture.levels.back();
@@ -143,7 +145,9 @@ IntegerTaps integer_taps(float coordinate, int size, Wrap wrap) {
   return {wrap_index(index, size, wrap), wrap_index(index + 1, size, wrap), position & 255};
 }
 
-Taps bilinear_taps(float coordinate, int size, Wrap wrap, BilinearWeights weights) {
+}  // namespace
+
+Taps standard_taps(float coordinate, int size, Wrap wrap, BilinearWeights weights) {
   if (weights == BilinearWeights::fixed_8) {
     const IntegerTaps taps = integer_taps(coordinate, size, wrap);
     return {taps.first, taps.second, static_cast<float>(taps.weight) * (1.0f / 256.0f)};
@@ -154,17 +158,21 @@ Taps bilinear_taps(float coordinate, int size, Wrap wrap, BilinearWeights weight
   return {wrap_index(index, size, wrap), wrap_index(index + 1, size, wrap), position - base};
 }
 
+int standard_nearest(float coordinate, int size, Wrap wrap) {
+  return wrap_index(static_cast<int>(std::floor(to_texels(coordinate, size))), size, wrap);
+}
+
+namespace {
+
 glm::vec4 sample_nearest(const Image& level, const Sampler& sampler, glm::vec2 uv) {
-  const int x = static_cast<int>(std::floor(to_texels(uv.x, level.width)));
-  const int y = static_cast<int>(std::floor(to_texels(uv.y, level.height)));
-  return load_texel(level, wrap_index(x, level.width, sampler.wrap_u),
-                    wrap_index(y, level.height, sampler.wrap_v));
+  return load_texel(level, standard_nearest(uv.x, level.width, sampler.wrap_u),
+                    standard_nearest(uv.y, level.height, sampler.wrap_v));
 }
 
 glm::vec4 sample_bilinear(const Image& level, const Sampler& sampler, glm::vec2 uv,
                           const Profile& profile) {
-  const Taps u = bilinear_taps(uv.x, level.width, sampler.wrap_u, profile.bilinear_weights);
-  const Taps v = bilinear_taps(uv.y, level.height, sampler.wrap_v, profile.bilinear_weights);
+  const Taps u = standard_taps(uv.x, level.width, sampler.wrap_u, profile.bilinear_weights);
+  const Taps v = standard_taps(uv.y, level.height, sampler.wrap_v, profile.bilinear_weights);
   return filter_bilinear(
       u, v, [&](int x, int y) { return load_texel(level, x, y); },
       [&](float a, float b, float t) { return lerp(a, b, t, profile.lerp); });

@@ -13,12 +13,23 @@
 
 namespace softfocus {
 
-// An image with its mip levels.
+// An image with its mip levels, or several.
+
+enum class TextureShape : std::uint8_t {
+  flat,
+  array,   ///< of layers
+  volume,  ///< of slices
+  cube,    ///< of six faces: +x, -x, +y, -y, +z, -z
+};
 
 /// Each level has half the size of the one before, rounded down, to 1x1. Without mipmaps there
-/// is one level.
+/// is one level. sliced_texture.h has what is not flat.
 struct Texture {
   std::vector<Image> levels;
+  TextureShape shape = TextureShape::flat;
+  /// The layers, slices or faces behind the first, which `levels` is: of its format, sizes and
+  /// levels. Level k of a volume of n slices has max(1, n >> k): the slices behind them lack it.
+  std::vector<Texture> behind{};
 };
 
 /// A texture of one level.
@@ -64,7 +75,7 @@ float log2_by_table(float x);
 /// Makes levels 1 and up. Each texel is the mean ((a + b) + (c + d)) * 0.25 of decoded texels
 /// (2x, 2y) to (2x + 1, 2y + 1) of the level before. Along a side of length 1 the texel counts
 /// twice; of an odd side the last texel is left out (box filter of GL's reference
-/// implementations).
+/// implementations). Of a volume it is the mean of eight, of two slices.
 void generate_mipmaps(Texture& texture, const Profile& profile);
 
 enum class Wrap : std::uint8_t {
@@ -83,6 +94,7 @@ struct Sampler {
   Filter filter = Filter::bilinear;
   Wrap wrap_u = Wrap::repeat;
   Wrap wrap_v = Wrap::repeat;
+  Wrap wrap_w = Wrap::repeat;  ///< of a volume
 };
 
 /// The texture at (u, v): (0, 0) is the upper left corner of the first texel, (1, 1) the lower

@@ -475,9 +475,18 @@ Scalars Lowering::sample_result(Call& call, const SpirvInstruction& in, ShaderRe
   if (of->kind == SpirvKind::sampled_image) of = &type(of->element);
   if (of->kind != SpirvKind::image) damaged("a texture is none");
   if (of->is_multisampled) refuse("multisampled textures are not supported");
+  if (of->is_arrayed && of->dim == SpirvDim::cube) {
+    refuse("samplerCubeArray is not supported; samplerCube and sampler2DArray are");
+  }
+  if (of->is_arrayed && of->dim != SpirvDim::two) {
+    refuse("sampler1DArray is not supported; sampler2DArray is");
+  }
+  if (of->dim == SpirvDim::cube && (in.op == image_gather || in.op == image_dref_gather)) {
+    refuse("textureGather of a samplerCube is not supported; of a sampler2DArray it is");
+  }
 
   ShaderSample sample{.dim = of->dim,
-                      .is_arrayed = of->is_arrayed,
+                      .shape = texture_shape(*of),
                       .is_shadow = of->is_shadow,
                       .is_integer = type(of->element).kind == SpirvKind::integer,
                       .texture = texture[0],

@@ -20,8 +20,12 @@ class UniformCollector {
     std::string name = found == module_.decorations.end() ? "" : found->second.name;
     const auto of_type = module_.decorations.find(type);
     const bool is_block = of_type != module_.decorations.end() && of_type->second.is_block;
-    // A block without an instance's name: its members stand alone, as in GLSL.
-    add(type, name, is_block && name.empty());
+    if (is_block && !name.empty() && wraps_one(type)) {
+      add(module_.type(type).members[0], name, false);
+    } else {
+      // A block without an instance's name: its members stand alone, as in GLSL.
+      add(type, name, is_block && name.empty());
+    }
     if (variable.initial == 0) return;
     const std::vector<std::uint32_t>& initial = module_.constants.at(variable.initial).words;
     std::copy(initial.begin(), initial.end(),
@@ -32,9 +36,16 @@ class UniformCollector {
   const SpirvModule& module_;
   ShaderUniforms& to_;
 
+  /// A block round a variable, as compilers of WGSL make it: a member that has no name of its own.
+  bool wraps_one(SpirvId block) const {
+    if (module_.type(block).members.size() != 1) return false;
+    const auto found = module_.decorations.find(block);
+    if (found == module_.decorations.end() || found->second.members.empty()) return true;
+    const std::string& name = found->second.members[0].name;
+    return name.empty() || name == "inner";
+  }
   static bool is_texture(SpirvKind kind) {
-    return kind == SpirvKind::sampled_image || kind == SpirvKind::image ||
-           kind == SpirvKind::sampler;
+    return kind == SpirvKind::sampled_image || kind == SpirvKind::image;
   }
   static bool is_number(SpirvKind kind) {
     return kind == SpirvKind::floating || kind == SpirvKind::integer || kind == SpirvKind::boolean;
@@ -65,7 +76,9 @@ class UniformCollector {
       }
       return;
     }
-    if (is_texture(type.kind)) {
+    if (type.kind == SpirvKind::sampler) {
+      grow(1, 0);  // the texture that it reads has its settings
+    } else if (is_texture(type.kind)) {
       add_texture(type, name);
     } else {
       add_numbers(id, name, 0, type.scalars);
@@ -91,23 +104,26 @@ class UniformCollector {
 
   void add_texture(const SpirvType& type, const std::string& name) {
     ShaderUniform made{.name = name, .kind = type.kind, .words = type.scalars};
-    if (type.kind != SpirvKind::sampler) {
-      const SpirvType& image = type.kind == SpirvKind::image ? type : module_.type(type.element);
-      const SpirvType& texel = module_.type(image.element);
-      made.dim = image.dim;
-      made.is_shadow = image.is_shadow;
-      made.is_signed = texel.is_signed || texel.kind == SpirvKind::floating;
-    }
+    const SpirvType& image = type.kind == SpirvKind::image ? type : module_.type(type.element);
+    const SpirvType& texel = module_.type(image.element);
+    made.dim = image.dim;
+    made.shape = texture_shape(image);
+    made.is_shadow = image.is_shadow;
+    made.is_signed = texel.is_signed || texel.kind == SpirvKind::floating;
     push(std::move(made), to_.texture_count++);
   }
 
   void push(ShaderUniform made, std::uint32_t fill) {
     made.first = static_cast<std::uint32_t>(to_.words.size());
-    if (to_.words.size() + made.words > kMostScalars) {
+    grow(made.words, fill);
+    to_.all.push_back(std::move(made));
+  }
+
+  void grow(std::uint32_t words, std::uint32_t fill) {
+    if (to_.words.size() + words > kMostScalars) {
       throw ShaderError("the uniforms have more than " + std::to_string(kMostScalars) + " numbers");
     }
-    to_.words.resize(to_.words.size() + made.words, fill);
-    to_.all.push_back(std::move(made));
+    to_.words.resize(to_.words.size() + words, fill);
   }
 };
 

@@ -18,6 +18,7 @@ struct ShaderUniform {
   bool is_signed = false;        ///< integers, and a texture's
   bool is_shadow = false;        ///< a texture is compared with
   SpirvDim dim = SpirvDim::two;  ///< of a texture
+  TextureShape shape = TextureShape::flat;
   std::uint32_t rows = 1, columns = 1;
   std::uint32_t count = 0;  ///< elements of an array; 0 if it is none
   std::uint32_t first = 0;  ///< its first word, of the words of all uniforms

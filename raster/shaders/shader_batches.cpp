@@ -5,6 +5,8 @@
 #include <cstring>
 #include <string>
 
+#include "raster/images/sliced_texture.h"
+
 namespace softfocus {
 namespace {
 
@@ -32,7 +34,23 @@ ShaderBatches::ShaderBatches(const ShaderProgram& program, const BatchSettings& 
       isa_(isa),
       lane_program_(lane_program(program, lanes_for(program, settings), isa)),
       textures_(settings.textures.begin(), settings.textures.end()) {
+  check_shapes();
   decode_textures();
+}
+
+/// Throws ShaderError for a texture that is not of the shape that the program reads.
+void ShaderBatches::check_shapes() const {
+  for (const ShaderSampleRegisters& of : program_.samples) {
+    if (of.texture.varies) continue;
+    for (const ShaderProgram::Constant& constant : program_.constants) {
+      if (constant.number != of.texture.number || constant.bits >= textures_.size()) continue;
+      const Texture* texture = textures_[constant.bits].texture;
+      if (texture == nullptr || texture->shape == of.sample.shape) continue;
+      throw ShaderError("texture " + std::to_string(constant.bits) + " is one of a " +
+                        std::string{sampler_name(texture->shape)} + ", and the shader reads a " +
+                        std::string{sampler_name(of.sample.shape)});
+    }
+  }
 }
 
 /// For what filters texels, or fetches others than halves: it reads them as floats.

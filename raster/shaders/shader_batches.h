@@ -68,6 +68,7 @@ class ShaderBatches {
   std::vector<DecodedTexture> decoded_{};
   std::vector<ShaderTexture> textures_;
 
+  void check_shapes() const;
   void decode_textures();
   void begin(BatchMemory& memory) const;
   /// Of a register that does not vary.

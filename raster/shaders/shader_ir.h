@@ -19,6 +19,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "raster/images/sampler.h"
 #include "raster/shaders/spirv_module.h"
 
 namespace softfocus {
@@ -151,11 +152,19 @@ enum class SampleKind : std::uint8_t {
   query_lod,  ///< the level that `implicit` would take
 };
 
+/// The shape of the textures that an image type reads.
+inline TextureShape texture_shape(const SpirvType& image) {
+  if (image.dim == SpirvDim::cube) return TextureShape::cube;
+  if (image.dim == SpirvDim::three) return TextureShape::volume;
+  return image.is_arrayed ? TextureShape::array : TextureShape::flat;
+}
+
 /// What a sampling instruction reads and makes.
 struct ShaderSample {
   SampleKind kind{};
   SpirvDim dim = SpirvDim::two;
-  bool is_arrayed = false, is_shadow = false;
+  TextureShape shape = TextureShape::flat;
+  bool is_shadow = false;
   bool is_integer = false;  ///< the texture's numbers are bits
   int channel = 0;          ///< of a gather
   ShaderValue texture = kNoValue, sampler = kNoValue;

@@ -534,7 +534,9 @@ void run_sample(const LaneStep& step, LaneFrame& frame) {
   const LaneSample& sample = frame.samples[step.place];
   const ShaderSample& of = sample.sample;
   const ShaderTexture* from = sample.texture.next == 0 ? texture_of(sample, frame) : nullptr;
-  if (from == nullptr || of.is_integer) return sample_by_lane(sample, frame, kLanes);
+  if (from == nullptr || of.is_integer || of.shape != TextureShape::flat) {
+    return sample_by_lane(sample, frame, kLanes);
+  }
   if (of.kind == SampleKind::fetch && of.dim == SpirvDim::two && sample.more[0].next == 0) {
     const std::int32_t level = numbers_of(sample.more[0], frame, 0)[0];
     if (level >= 0 && level < std::ssize(from->texture->levels)) {

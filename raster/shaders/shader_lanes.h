@@ -62,7 +62,7 @@ struct LaneFrame {
   bool y_is_up = false;      ///< dFdy is towards the upper row of a block
 };
 
-/// The texture that a sample reads, of its first lane; null if there is none.
+/// The texture that a sample reads, of its first lane; null if there is none of its shape.
 const ShaderTexture* texture_of(const LaneSample& sample, const LaneFrame& frame);
 
 /// Any sample, a lane after the other.

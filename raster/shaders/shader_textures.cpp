@@ -2,47 +2,22 @@
 // in vectors, and the way of all that is not there.
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
 
 #include "raster/images/texel.h"
-#include "raster/shaders/shader_lanes.h"
+#include "raster/shaders/one_lane.h"
 
 namespace softfocus {
 namespace {
 
 using At = LaneSample::At;
 
-/// The registers of one lane.
-struct Lane {
-  const LaneFrame& frame;
-  int unit_lanes, lane;
-
-  std::byte* place(const At& at, int of) const {
-    const auto vector = static_cast<std::size_t>(of / unit_lanes);
-    return frame.memory + at.place + vector * at.next +
-           static_cast<std::size_t>(of % unit_lanes) * 4;
-  }
-  std::uint32_t bits(const At& at) const { return bits_of(at, lane); }
-  std::uint32_t bits_of(const At& at, int of) const {
-    std::uint32_t value = 0;
-    if (at.is_there) std::memcpy(&value, place(at, of), sizeof value);
-    return value;
-  }
-  float number(const At& at) const { return std::bit_cast<float>(bits(at)); }
-  float number_of(const At& at, int of) const { return std::bit_cast<float>(bits_of(at, of)); }
-  std::int32_t whole(const At& at) const { return static_cast<std::int32_t>(bits(at)); }
-  void put(const At& at, std::uint32_t value) const {
-    if (at.is_there) std::memcpy(place(at, lane), &value, sizeof value);
-  }
-  void put(const At& at, float value) const { put(at, std::bit_cast<std::uint32_t>(value)); }
-};
-
-const ShaderTexture* texture_at(const LaneFrame& frame, std::uint32_t number) {
+const ShaderTexture* texture_at(const LaneFrame& frame, std::uint32_t number, TextureShape shape) {
   if (number >= frame.textures.size()) return nullptr;
   const ShaderTexture& found = frame.textures[number];
-  return found.texture == nullptr || found.texture->levels.empty() ? nullptr : &found;
+  const bool is_it =
+      found.texture != nullptr && !found.texture->levels.empty() && found.texture->shape == shape;
+  return is_it ? &found : nullptr;
 }
 
 std::int32_t wrapped(std::int32_t i, std::int32_t size, Wrap wrap) {
@@ -117,35 +92,14 @@ glm::vec2 place_of(const LaneSample& sample, const Lane& lane, const ShaderTextu
   return at;
 }
 
-void gather(const LaneSample& sample, const Lane& lane, const ShaderTexture& from) {
-  const Image& image = from.texture->levels.front();
-  const glm::vec2 at = place_of(sample, lane, from);
-  const Sampler& sampler = from.sampler;
-  constexpr float kFarthest = 0x1p22f;
-  const auto first = [&](float u, int size) {
-    const float texels = sanitized(u) * static_cast<float>(size) - 0.5f;
-    return static_cast<std::int32_t>(std::floor(std::clamp(texels, -kFarthest, kFarthest)));
-  };
-  const std::int32_t x = first(at.x, image.width), y = first(at.y, image.height);
-  constexpr int kOrder[4][2] = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
-  for (std::size_t i = 0; i < 4; ++i) {
-    const glm::vec4 texel =
-        fetch_texel(image, wrapped(x + kOrder[i][0], image.width, sampler.wrap_u),
-                    wrapped(y + kOrder[i][1], image.height, sampler.wrap_v), *lane.frame.profile);
-    float value = texel[sample.sample.channel];
-    if (sample.compared.is_there) {
-      value = compare(from.compare, lane.number(sample.compared), texel.x) ? 1.0f : 0.0f;
-    }
-    lane.put(sample.to[i], value);
-  }
-}
-
 void sample_one(const LaneSample& sample, const Lane& lane) {
-  const ShaderTexture* from = texture_at(lane.frame, lane.bits(sample.texture));
+  const ShaderTexture* from =
+      texture_at(lane.frame, lane.bits(sample.texture), sample.sample.shape);
   if (from == nullptr) {
     for (const At& to : sample.to) lane.put(to, 0u);
     return;
   }
+  if (sample.sample.shape != TextureShape::flat) return sample_sliced_lane(sample, lane, *from);
   // Results that are not made below.
   for (std::size_t i = 1; i < 4; ++i) {
     if (sample.sample.kind >= SampleKind::size || sample.compared.is_there) {
@@ -154,7 +108,9 @@ void sample_one(const LaneSample& sample, const Lane& lane) {
   }
   switch (sample.sample.kind) {
     case SampleKind::fetch: return fetch(sample, lane, *from);
-    case SampleKind::gather: return gather(sample, lane, *from);
+    case SampleKind::gather:
+      return gather_texels(sample, lane, *from, from->texture->levels.front(),
+                           place_of(sample, lane, *from));
     case SampleKind::size: {
       const auto last = static_cast<std::int32_t>(from->texture->levels.size()) - 1;
       const Image& image =
@@ -189,8 +145,30 @@ void sample_one(const LaneSample& sample, const Lane& lane) {
 
 }  // namespace
 
+void gather_texels(const LaneSample& sample, const Lane& lane, const ShaderTexture& from,
+                   const Image& image, glm::vec2 at) {
+  const Sampler& sampler = from.sampler;
+  constexpr float kFarthest = 0x1p22f;
+  const auto first = [&](float u, int size) {
+    const float texels = sanitized(u) * static_cast<float>(size) - 0.5f;
+    return static_cast<std::int32_t>(std::floor(std::clamp(texels, -kFarthest, kFarthest)));
+  };
+  const std::int32_t x = first(at.x, image.width), y = first(at.y, image.height);
+  constexpr int kOrder[4][2] = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const glm::vec4 texel =
+        fetch_texel(image, wrapped(x + kOrder[i][0], image.width, sampler.wrap_u),
+                    wrapped(y + kOrder[i][1], image.height, sampler.wrap_v), *lane.frame.profile);
+    float value = texel[sample.sample.channel];
+    if (sample.compared.is_there) {
+      value = compare(from.compare, lane.number(sample.compared), texel.x) ? 1.0f : 0.0f;
+    }
+    lane.put(sample.to[i], value);
+  }
+}
+
 const ShaderTexture* texture_of(const LaneSample& sample, const LaneFrame& frame) {
-  return texture_at(frame, Lane{frame, 4, 0}.bits(sample.texture));
+  return texture_at(frame, Lane{frame, 4, 0}.bits(sample.texture), sample.sample.shape);
 }
 
 void sample_by_lane(const LaneSample& sample, LaneFrame& frame, int unit_lanes) {

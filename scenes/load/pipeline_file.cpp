@@ -209,12 +209,12 @@ void read_inputs(Section section, const Reading& reading, PipelinePass& pass) {
     const std::string name{key.str()};
     const std::vector<ShaderUniform>& all = pass.shader.uniforms.all;
     const auto at = std::find_if(all.begin(), all.end(), [&](const ShaderUniform& of) {
-      return of.name == name && of.kind == SpirvKind::sampled_image;
+      return of.name == name && is_texture(of);
     });
     if (at == all.end()) {
       std::vector<std::string> names;
       for (const ShaderUniform& of : all) {
-        if (of.kind == SpirvKind::sampled_image) names.push_back(of.name);
+        if (is_texture(of)) names.push_back(of.name);
       }
       fail_at(section, name,
               "the shader has no texture of that name; there " +
@@ -227,7 +227,8 @@ void read_inputs(Section section, const Reading& reading, PipelinePass& pass) {
       Section input = read_section(section, name);
       from = read_text(input, "from", "");
       sampler.filter = read_choice(input, "filter", sampler.filter, kFilters);
-      sampler.wrap_u = sampler.wrap_v = read_choice(input, "wrap", sampler.wrap_u, kWraps);
+      sampler.wrap_u = sampler.wrap_v = sampler.wrap_w =
+          read_choice(input, "wrap", sampler.wrap_u, kWraps);
       finish_section(input);
     } else {
       from = read_text(section, name, "");

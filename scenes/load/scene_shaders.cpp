@@ -4,6 +4,7 @@
 #include <cstring>
 #include <optional>
 
+#include "raster/images/sliced_texture.h"
 #include "raster/shaders/glsl/glsl.h"
 #include "scenes/files/file_bytes.h"
 #include "scenes/files/scene_error.h"
@@ -29,7 +30,7 @@ std::vector<std::uint32_t> words_of_file(Section& section, std::string_view key,
       scene);
 }
 
-bool is_sampler(const ShaderUniform& of) { return of.kind == SpirvKind::sampled_image; }
+bool is_sampler(const ShaderUniform& of) { return is_texture(of); }
 bool is_number(const ShaderUniform& of) {
   return of.kind == SpirvKind::floating || of.kind == SpirvKind::integer ||
          of.kind == SpirvKind::boolean;
@@ -116,6 +117,29 @@ void read_uniforms(Section section, ShaderPair& pair) {
 
 using BoundTextures = std::map<std::string, ShaderSurfaceTexture, std::less<>>;
 
+/// The shape that the shaders read a texture as.
+TextureShape shape_in(const ShaderPair& pair, const std::string& name) {
+  for (const UserShader* shader : {&pair.vertex, &pair.fragment}) {
+    const ShaderUniform* of = find_uniform(*shader, name);
+    if (of != nullptr && is_sampler(*of)) return of->shape;
+  }
+  return TextureShape::flat;
+}
+
+/// A scene's picture cut into slices, as another of its textures.
+std::uint32_t cut_of(const Section& section, const std::string& key, TextureShape shape,
+                     std::uint32_t number, Scene& scene) {
+  const Image& picture = scene.textures[number].levels[0];
+  const std::string why = why_not_cut(picture.width, picture.height, shape);
+  if (!why.empty()) {
+    fail_at(section, key, "is a " + std::string{sampler_name(shape)} + ", and its file's " + why);
+  }
+  Texture cut = cut_texture(picture, shape);
+  generate_mipmaps(cut, {});
+  scene.textures.push_back(std::move(cut));
+  return static_cast<std::uint32_t>(scene.textures.size() - 1);
+}
+
 BoundTextures read_textures(Section section, const std::filesystem::path& directory,
                             const NamedSurfaces& surfaces, const ShaderPair& pair, Scene& scene) {
   BoundTextures bound;
@@ -130,19 +154,23 @@ BoundTextures read_textures(Section section, const std::filesystem::path& direct
     const auto named = surfaces.textures.find(value);
     if (named != surfaces.textures.end()) {
       bound[key] = {named->second.index, named->second.sampler, true};
-      continue;
+    } else {
+      scene.files.push_back(directory / value);
+      bound[key] = {static_cast<std::uint32_t>(scene.textures.size()),
+                    {Filter::trilinear, Wrap::repeat, Wrap::repeat},
+                    true};
+      scene.textures.push_back(load_texture(scene.files.back()));
     }
-    scene.files.push_back(directory / value);
-    bound[key] = {static_cast<std::uint32_t>(scene.textures.size()),
-                  {Filter::trilinear, Wrap::repeat, Wrap::repeat},
-                  true};
-    scene.textures.push_back(load_texture(scene.files.back()));
+    const TextureShape shape = shape_in(pair, key);
+    if (shape != TextureShape::flat) {
+      bound[key].texture = cut_of(section, key, shape, bound[key].texture, scene);
+    }
   }
   return bound;
 }
 
 SurfaceShader made_shader(const Section& section, const UserShader& shader,
-                          const BoundTextures& bound) {
+                          const BoundTextures& bound, const Scene& scene) {
   SurfaceShader made{.program = std::make_shared<const ShaderProgram>(compile_shader(
                          shader, shader.uniforms.words, late_words(shader.uniforms))),
                      .uniforms = shader.uniforms};
@@ -152,6 +180,11 @@ SurfaceShader made_shader(const Section& section, const UserShader& shader,
     if (!is_sampler(of)) continue;
     const std::uint32_t number = shader.uniforms.words[of.first];
     if (const auto found = bound.find(of.name); found != bound.end()) {
+      if (scene.textures[found->second.texture].shape != of.shape) {
+        fail_at(section, "textures",
+                "the material's texture is flat, and the shaders read '" + of.name + "' as a " +
+                    std::string{sampler_name(of.shape)} + "; another name would be right");
+      }
       made.textures[number] = found->second;
     } else if (used[number]) {
       fail_at(section, "textures",
@@ -198,8 +231,8 @@ void read_shaders(Section& section, const std::filesystem::path& directory,
       }
     }
     material.shaders = std::make_shared<const SurfaceShaders>(
-        SurfaceShaders{made_shader(section, pair.vertex, bound),
-                       made_shader(section, pair.fragment, bound), std::move(attributes)});
+        SurfaceShaders{made_shader(section, pair.vertex, bound, scene),
+                       made_shader(section, pair.fragment, bound, scene), std::move(attributes)});
   } catch (const ShaderError& error) {
     fail_at(section, key, error.what());
   }

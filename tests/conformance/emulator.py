@@ -38,7 +38,8 @@ class Texels(ctypes.Structure):
 
     _fields_ = [("struct_size", ctypes.c_size_t), ("width", ctypes.c_int32),
                 ("height", ctypes.c_int32), ("format", ctypes.c_int32),
-                ("first", ctypes.c_void_p), ("row_bytes", ctypes.c_ssize_t)]
+                ("first", ctypes.c_void_p), ("row_bytes", ctypes.c_ssize_t),
+                ("slices", ctypes.c_int32), ("slice_bytes", ctypes.c_ssize_t)]
 
 
 class Pass(ctypes.Structure):
@@ -63,7 +64,7 @@ class Sampler(ctypes.Structure):
 
     _fields_ = [("struct_size", ctypes.c_size_t), ("filter", ctypes.c_int32),
                 ("wrap_u", ctypes.c_int32), ("wrap_v", ctypes.c_int32),
-                ("compare", ctypes.c_int32)]
+                ("compare", ctypes.c_int32), ("wrap_w", ctypes.c_int32)]
 
 
 class Attribute(ctypes.Structure):
@@ -138,14 +139,16 @@ class Shader:
         self.emulator.call("set_uniform", self.emulator.context, self.handle, name.encode(), array,
                            ctypes.c_size_t(len(numbers)))
 
-    def set_texture(self, name, width, height, texel_format, data, sampling):
-        """`sampling`: "filter", "wrap_u", "wrap_v" and "compare" by name; all may be left out."""
+    def set_texture(self, name, width, height, texel_format, data, sampling, slices=1):
+        """`sampling`: "filter", "wrap_u", "wrap_v", "wrap_w" and "compare" by name; all may be left
+        out. `slices`: layers, slices or faces, one behind the other."""
         memory = ctypes.create_string_buffer(data, len(data))
         texels = sized(Texels, width=width, height=height, format=FORMATS[texel_format],
-                       first=ctypes.addressof(memory))
+                       first=ctypes.addressof(memory), slices=slices)
         sampler = sized(Sampler, filter=FILTERS[sampling.get("filter", "nearest")],
                         wrap_u=WRAPS[sampling.get("wrap_u", "clamp")],
                         wrap_v=WRAPS[sampling.get("wrap_v", "clamp")],
+                        wrap_w=WRAPS[sampling.get("wrap_w", "clamp")],
                         compare=COMPARES[sampling.get("compare", "lequal")])
         self.emulator.call("set_texture", self.emulator.context, self.handle, name.encode(),
                            ctypes.byref(texels), ctypes.byref(sampler))

@@ -148,6 +148,33 @@ TEST_CASE("alpha is the depth, and a discarded pixel shows what is behind") {
   CHECK(load_texel(picture, 50, 80) == glm::vec4{0.0f, 0.0f, 1.0f, 50.0f});
 }
 
+TEST_CASE("a material's texture is cut into the faces that its shader reads") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const Files files;
+  files.write("six.png", test::png_bytes(6, 1));
+  files.write("two.png", test::png_bytes(2, 1));
+  files.write("sky.frag",
+              "#version 330\nout vec4 c;\nuniform samplerCube sky;\n"
+              "void main() { c = texture(sky, vec3(gl_FragCoord.x - 32.0, 0.0, 0.0)); }\n");
+  const auto read = [&](const std::string& name) {
+    return files.read(
+        "[camera]\nposition = [0, 0, 3]\nfar_m = 50\n[material.m]\n"
+        "fragment = \"sky.frag\"\n[material.m.textures]\nsky = \"" +
+        name + ".png\"\n[[object]]\nmaterial = \"m\"\nshape = \"cube\"\nsize = 3\n" +
+        "position = [0, 0, -1.5]\n");
+  };
+  const Scene scene = read("six");
+  ThreadPool pool{1};
+  const Image picture =
+      draw_scene(scene, camera_matrices(scene.camera, 0.0, 64, 64), 0.0, 64, 64, {}, pool);
+  CHECK(load_texel(picture, 40, 32).x == 1.0f);
+  CHECK(load_texel(picture, 24, 32).y == 1.0f);
+  const std::string said = test::scene_error_of([&] { read("two"); });
+  CAPTURE(said);
+  CHECK(said.find("sky: is a samplerCube, and its file's 2 x 1 texels are no cube") !=
+        std::string::npos);
+}
+
 TEST_CASE("opacity blends a surface by shaders") {
   if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
   const Files files;

@@ -111,7 +111,7 @@ void bind_files(const ShaderOptions& options, Pipeline& pipeline, PipelinePass& 
   for (const std::string& text : options.textures) {
     const auto [name, file] = split_setting("--texture", text);
     const ShaderUniform* of = find_uniform(pass.shader, name);
-    if (of == nullptr || of->kind != SpirvKind::sampled_image) continue;  // of another shader
+    if (of == nullptr || !is_texture(*of)) continue;  // of another shader
     PictureFile opened = open_picture_file(file);
     Image image = read_colour(opened, choose_colour(opened, {}, "--texture"), false).image;
     pass.inputs.push_back({.texture = pass.shader.uniforms.words[of->first],

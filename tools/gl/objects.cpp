@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cstring>
 
+#include "raster/images/sliced_texture.h"
 #include "raster/images/texel.h"
 
 namespace softfocus {
@@ -79,20 +80,30 @@ std::vector<std::byte> room_for(Format format, int width, int height) {
 
 // Textures are made and read in a unit that no program uses, so that what is bound for
 // a draw stays bound.
-void bind_for_work(GLuint texture) {
+void bind_for_work(GLuint texture, GLenum target = GL_TEXTURE_2D) {
   glActiveTexture(GL_TEXTURE15);
-  glBindTexture(GL_TEXTURE_2D, texture);
+  glBindTexture(target, texture);
 }
 
-GlTexture new_texture() {
+GlTexture new_texture(GLenum target = GL_TEXTURE_2D) {
   GLuint name = 0;
   glGenTextures(1, &name);
-  bind_for_work(name);
+  bind_for_work(name, target);
   return GlTexture{name};
 }
 
-void set_parameter(GLenum parameter, GLint value) {
-  glTexParameteri(GL_TEXTURE_2D, parameter, value);
+void set_parameter(GLenum parameter, GLint value, GLenum target = GL_TEXTURE_2D) {
+  glTexParameteri(target, parameter, value);
+}
+
+GLenum target_of(TextureShape shape) {
+  switch (shape) {
+    case TextureShape::flat: return GL_TEXTURE_2D;
+    case TextureShape::array: return GL_TEXTURE_2D_ARRAY;
+    case TextureShape::volume: return GL_TEXTURE_3D;
+    case TextureShape::cube: return GL_TEXTURE_CUBE_MAP;
+  }
+  return GL_TEXTURE_2D;
 }
 
 // WebGL's, once: a driver that hung, or a browser that needs the GPU.
@@ -181,16 +192,52 @@ GLint location(const GlProgram& program, const char* name) {
 
 }  // namespace
 
-GlTexture upload(const Texture& texture, const Sampler& sampler) {
-  GlTexture name = new_texture();
-  for (std::size_t level = 0; level < texture.levels.size(); ++level) {
-    const Image& image = texture.levels[level];
-    const PixelFormat format = pixel_format(image.format);
-    glTexImage2D(GL_TEXTURE_2D, static_cast<GLint>(level), static_cast<GLint>(format.internal),
-                 image.width, image.height, 0, format.layout, format.type, packed(image).data());
+namespace {
+
+/// A level of the texture that is bound to `target`.
+void upload_level(GLenum target, GLint level, const Image& image) {
+  const PixelFormat format = pixel_format(image.format);
+  glTexImage2D(target, level, static_cast<GLint>(format.internal), image.width, image.height, 0,
+               format.layout, format.type, packed(image).data());
+}
+
+/// Layers or slices.
+void upload_slices(GLenum target, const Texture& texture, std::size_t level) {
+  const Image& first = texture.levels[level];
+  const PixelFormat format = pixel_format(first.format);
+  const int count = slice_count(texture, level);
+  const auto number = static_cast<GLint>(level);
+  glTexImage3D(target, number, static_cast<GLint>(format.internal), first.width, first.height,
+               count, 0, format.layout, format.type, nullptr);
+  for (int i = 0; i < count; ++i) {
+    glTexSubImage3D(target, number, 0, 0, i, first.width, first.height, 1, format.layout,
+                    format.type, packed(slice_level(texture, i, level)).data());
   }
-  set_parameter(GL_TEXTURE_MAX_LEVEL, static_cast<GLint>(texture.levels.size()) - 1);
-  set_sampler(name, sampler);
+}
+
+}  // namespace
+
+GlTexture upload(const Texture& texture, const Sampler& sampler) {
+  const GLenum target = target_of(texture.shape);
+  GlTexture name = new_texture(target);
+  for (std::size_t level = 0; level < texture.levels.size(); ++level) {
+    const auto number = static_cast<GLint>(level);
+    if (texture.shape == TextureShape::flat) {
+      upload_level(target, number, texture.levels[level]);
+    } else if (texture.shape == TextureShape::cube) {
+      for (int face = 0; face < 6; ++face) {
+        upload_level(GL_TEXTURE_CUBE_MAP_POSITIVE_X + static_cast<GLenum>(face), number,
+                     slice_level(texture, face, level));
+      }
+    } else {
+      upload_slices(target, texture, level);
+    }
+  }
+#ifndef __EMSCRIPTEN__
+  if (texture.shape == TextureShape::cube) glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
+#endif
+  set_parameter(GL_TEXTURE_MAX_LEVEL, static_cast<GLint>(texture.levels.size()) - 1, target);
+  set_sampler(name, sampler, texture.shape);
   check_error("uploading a texture");
   return name;
 }
@@ -387,17 +434,21 @@ void set_uniform(const GlProgram& program, const ShaderUniform& of,
   }
 }
 
-void set_sampler(const GlTexture& texture, const Sampler& sampler) {
-  bind_for_work(texture);
-  set_parameter(GL_TEXTURE_MIN_FILTER, minification(sampler.filter));
-  set_parameter(GL_TEXTURE_MAG_FILTER, sampler.filter == Filter::nearest ? GL_NEAREST : GL_LINEAR);
-  set_parameter(GL_TEXTURE_WRAP_S, wrap_mode(sampler.wrap_u));
-  set_parameter(GL_TEXTURE_WRAP_T, wrap_mode(sampler.wrap_v));
+void set_sampler(const GlTexture& texture, const Sampler& sampler, TextureShape shape) {
+  const GLenum target = target_of(shape);
+  bind_for_work(texture, target);
+  const auto set = [&](GLenum parameter, GLint value) { set_parameter(parameter, value, target); };
+  set(GL_TEXTURE_MIN_FILTER, minification(sampler.filter));
+  set(GL_TEXTURE_MAG_FILTER, sampler.filter == Filter::nearest ? GL_NEAREST : GL_LINEAR);
+  set(GL_TEXTURE_WRAP_S, wrap_mode(sampler.wrap_u));
+  set(GL_TEXTURE_WRAP_T, wrap_mode(sampler.wrap_v));
+  if (shape == TextureShape::volume) set(GL_TEXTURE_WRAP_R, wrap_mode(sampler.wrap_w));
 }
 
-void set_texture(const GlProgram& program, const char* name, int unit, const GlTexture& texture) {
+void set_texture(const GlProgram& program, const char* name, int unit, const GlTexture& texture,
+                 TextureShape shape) {
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-  glBindTexture(GL_TEXTURE_2D, texture);
+  glBindTexture(target_of(shape), texture);
   set_uniform(program, name, unit);
 }
 

@@ -55,7 +55,8 @@ struct GlProgram {
   operator GLuint() const { return name; }  // NOLINT(google-explicit-constructor)
 };
 
-/// A texture with all its levels; one level is sampled without mipmaps.
+/// A texture with all its levels; one level is sampled without mipmaps. Cubes are seamless from
+/// then on, as OpenGL ES has them.
 GlTexture upload(const Texture& texture, const Sampler& sampler);
 /// An image for texelFetch.
 GlTexture upload(const Image& image);
@@ -110,9 +111,11 @@ void set_uniform(const GlProgram& program, const char* name, const glm::mat4& va
 void set_uniform(const GlProgram& program, const ShaderUniform& of,
                  std::span<const std::uint32_t> words);
 /// How a texture is sampled from now on.
-void set_sampler(const GlTexture& texture, const Sampler& sampler);
+void set_sampler(const GlTexture& texture, const Sampler& sampler,
+                 TextureShape shape = TextureShape::flat);
 /// Binds a texture to a unit and the sampler uniform to it.
-void set_texture(const GlProgram& program, const char* name, int unit, const GlTexture& texture);
+void set_texture(const GlProgram& program, const char* name, int unit, const GlTexture& texture,
+                 TextureShape shape = TextureShape::flat);
 
 /// One triangle over the whole target, for programs with fullscreen.vert.
 void draw_fullscreen(const GlTarget& target, const GlProgram& program);

@@ -148,12 +148,19 @@ void PipelineOnGl::draw(std::size_t number, std::size_t turn, const GlTexture& p
     }
     for (const PipelineInput& input : of.inputs) {
       if (input.texture != words[uniform.first]) continue;
+      const bool is_cut = input.source == PipelineSource::texture &&
+                          pipeline_.textures[input.number].shape == uniform.shape;
+      if (uniform.shape != TextureShape::flat && !is_cut) {
+        // It is not read, and must not share a unit with a sampler of another kind.
+        set_uniform(pass.program, uniform.name.c_str(), unit++);
+        continue;
+      }
       const GlTexture& texture = texture_of(input, picture);
       if (input.sampler.filter == Filter::trilinear && input.source != PipelineSource::texture) {
         generate_levels(texture);
       }
-      set_sampler(texture, input.sampler);
-      set_texture(pass.program, uniform.name.c_str(), unit++, texture);
+      set_sampler(texture, input.sampler, uniform.shape);
+      set_texture(pass.program, uniform.name.c_str(), unit++, texture, uniform.shape);
     }
   }
   const GlTarget& target = pass.targets[turn % pass.targets.size()];

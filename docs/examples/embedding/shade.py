@@ -42,6 +42,8 @@ class Texels(ctypes.Structure):
         ("format", ctypes.c_int32),
         ("first", ctypes.c_void_p),
         ("row_bytes", ctypes.c_ssize_t),
+        ("slices", ctypes.c_int32),
+        ("slice_bytes", ctypes.c_ssize_t),
     ]
 
 
@@ -58,9 +60,9 @@ class Pass(ctypes.Structure):
 
 
 def texels_of(array):
-    height, width, _ = array.shape
+    *slices, height, width, _ = array.shape
     return Texels(ctypes.sizeof(Texels), width, height, FORMATS[str(array.dtype)],
-                  array.ctypes.data, array.strides[0])
+                  array.ctypes.data, array.strides[-3], *slices)
 
 
 class Shader:
@@ -101,7 +103,8 @@ class Shader:
                   ctypes.c_size_t(values.size))
 
     def set_texture(self, name, array):
-        """An array of shape (h, w, 4), bilinear, its edges repeated."""
+        """An array of shape (h, w, 4), bilinear, its edges repeated; (n, h, w, 4) for a sampler3D,
+        sampler2DArray or samplerCube."""
         pixels = numpy.ascontiguousarray(array)
         self.call("set_texture", name.encode(), ctypes.byref(texels_of(pixels)), None)
 

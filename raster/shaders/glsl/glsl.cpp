@@ -157,16 +157,31 @@ CompiledGlsl compiled(const GlslSource& source, GlslText text, bool is_relaxed) 
   // and ES 3.10 nor the compatibility profile, and want a location of everything. What comes out
   // can be said in SPIR-V all the same.
   int rules = EShMsgDebugInfo | (is_relaxed ? EShMsgRelaxedErrors : EShMsgDefault);
-  if (text.is_vulkan) {
-    shader.setEnvInput(glslang::EShSourceGlsl, stage, glslang::EShClientVulkan, 100);
+  if (text.is_vulkan || text.is_hlsl) {
+    const auto language = text.is_hlsl ? glslang::EShSourceHlsl : glslang::EShSourceGlsl;
+    shader.setEnvInput(language, stage, glslang::EShClientVulkan, 100);
     shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_0);
     shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_0);
     rules |= EShMsgSpvRules | EShMsgVulkanRules;
+  }
+  if (text.is_hlsl) {
+    rules |= EShMsgReadHlsl | EShMsgHlslOffsets;
+    shader.setEntryPoint("main");
+    shader.setAutoMapBindings(true);
+    shader.setAutoMapLocations(true);
   }
   const auto flags = static_cast<EShMessages>(rules);
 
   CompiledGlsl out;
   Messages messages;
+  if (text.is_hlsl) {
+    std::string expanded;
+    glslang::TShader::ForbidIncluder none;
+    if (shader.preprocess(GetDefaultResources(), 110, ENoProfile, false, false, flags, &expanded,
+                          none)) {
+      check_hlsl_nesting(expanded, source.name);
+    }
+  }
   const bool is_parsed = shader.parse(GetDefaultResources(), 110, false, flags);
   add_messages(shader.getInfoLog(), source.name, messages);
   if (!is_parsed) refuse(messages, text, source.name);
@@ -175,6 +190,12 @@ CompiledGlsl compiled(const GlslSource& source, GlslText text, bool is_relaxed) 
   const bool is_linked = program.link(flags);
   add_messages(program.getInfoLog(), source.name, messages);
   if (!is_linked) refuse(messages, text, source.name);
+  const auto is_lost = [](const std::string& warning) {
+    return warning.find("Entry point not found") != std::string::npos;
+  };
+  if (text.is_hlsl && std::any_of(messages.warnings.begin(), messages.warnings.end(), is_lost)) {
+    throw ShaderError(source.name + ": no function main()");
+  }
 
   glslang::SpvOptions options;
   options.generateDebugInfo = true;
@@ -184,7 +205,7 @@ CompiledGlsl compiled(const GlslSource& source, GlslText text, bool is_relaxed) 
   if (out.words.size() < 5) refuse(messages, text, source.name);
   out.words[1] = kSpirv10;
   out.convention = text.convention;
-  out.text = text_for_drivers(text);
+  if (!text.is_hlsl) out.text = text_for_drivers(text);
   out.files = std::move(text.files);
   out.parameters = std::move(text.parameters);
   out.warnings = std::move(messages.warnings);

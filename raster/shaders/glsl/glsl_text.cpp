@@ -486,7 +486,39 @@ bool has_function(std::span<const GlslToken> tokens, std::string_view returns,
   return false;
 }
 
+namespace {
+
+std::string definitions(const GlslSource& source) {
+  std::string made;
+  for (const auto& [name, value] : source.defines) {
+    if (name.empty() || !std::all_of(name.begin(), name.end(), is_word) ||
+        value.find_first_of("\n\r\\") != std::string::npos) {
+      throw ShaderError(
+          source.name +
+          ": a definition has to be a name, and a value of one line without a backslash");
+    }
+    made.append("#define ").append(name).append(" ").append(value).append("\n");
+  }
+  return made;
+}
+
+GlslText hlsl_text(const GlslSource& source, const GlslReader& read) {
+  GlslText out{.convention = GlslConvention::plain, .said_version = true, .is_hlsl = true};
+  Includes includes(read, out.files);
+  const std::string text =
+      spliced(includes.expanded(cleaned(source.text, source.name), source.name));
+  out.missing_includes = std::move(includes.missing);
+  out.before = definitions(source) + hlsl_surroundings(glsl_tokens(text));
+  const std::string whole = line_directive(1, source.name) + text;
+  check_limits(out.before + whole, source.name);
+  out.text = with_lines(whole, true);
+  return out;
+}
+
+}  // namespace
+
 GlslText glsl_text(const GlslSource& source, const GlslReader& read, bool raise, int least) {
+  if (is_hlsl(source.name)) return hlsl_text(source, read);
   GlslText out;
   std::string text = cleaned(source.text, source.name);
   Includes includes(read, out.files);
@@ -555,19 +587,7 @@ GlslText glsl_text(const GlslSource& source, const GlslReader& read, bool raise,
   out.is_vulkan = is_vulkan(tokens);
 
   out.before = "#extension GL_GOOGLE_include_directive : enable\n";  // and with it #line 1 "FILE"
-  for (const auto& [name, value] : source.defines) {
-    if (name.empty() || !std::all_of(name.begin(), name.end(), is_word) ||
-        value.find_first_of("\n\r\\") != std::string::npos) {
-      throw ShaderError(
-          source.name +
-          ": a definition has to be a name, and a value of one line without a backslash");
-    }
-    for (const std::string_view part :
-         {std::string_view("#define "), std::string_view(name), std::string_view(" "),
-          std::string_view(value), std::string_view("\n")}) {
-      out.before += part;
-    }
-  }
+  out.before += definitions(source);
   if (version.has_blocks() && !out.is_vulkan) {
     out.before += "layout(std140) uniform;\n";
   } else if (uses(tokens, "GL_ARB_uniform_buffer_object")) {

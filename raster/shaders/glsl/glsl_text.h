@@ -44,6 +44,7 @@ struct GlslText {
   GlslVersion taken_as{};
   bool said_version = false;
   bool is_vulkan = false;
+  bool is_hlsl = false;
   std::vector<std::string> files{};
   std::vector<GlslParameter> parameters{};
   /// Why the files of "#error kMissingInclude N" cannot be had.
@@ -71,6 +72,16 @@ struct GlslSurroundings {
 };
 GlslSurroundings glsl_surroundings(GlslConvention convention, const GlslSource& source,
                                    std::span<const GlslToken> tokens, const GlslVersion& version);
+
+/// A file of that name is HLSL.
+inline bool is_hlsl(const std::string& name) { return name.ends_with(".hlsl"); }
+
+/// What HLSL of D3D9 needs before it: samplers with their textures, tex2D() and its kin.
+std::string hlsl_surroundings(std::span<const GlslToken> tokens);
+
+/// Throws ShaderError for HLSL, without macros, that is nested deeper than glslang's stack allows:
+/// it reads HLSL by functions that call each other. `text` has #line.
+void check_hlsl_nesting(std::string_view text, const std::string& name);
 
 /// What `recognised` is; `has_version`: the text has a #version.
 GlslConvention recognise(ShaderStage stage, std::span<const GlslToken> tokens, bool has_version);

@@ -461,6 +461,56 @@ TEST_CASE("the C interface: a shadow sampler compares as it is told") {
   }
 }
 
+TEST_CASE("the C interface: arrays, volumes and cubes are set from memory, slice by slice") {
+  if (is_glsl_missing()) return;
+  const Context context = open_context(1);
+  // Red counts texels: two a slice, of a row each.
+  std::array<float, 16> memory{};
+  for (std::size_t i = 0; i < memory.size(); ++i) memory[i] = static_cast<float>(i);
+  softfocus_texels texels{};
+  texels.struct_size = sizeof texels;
+  texels.width = texels.height = 1;
+  texels.format = SOFTFOCUS_FORMAT_R32F;
+  texels.first = memory.data();
+  softfocus_sampler sampler = sampler_of(SOFTFOCUS_NEAREST, SOFTFOCUS_CLAMP);
+  sampler.wrap_w = SOFTFOCUS_CLAMP;
+  const auto read = [&](const std::string& type, const std::string& at) {
+    const std::string text = "#version 330\nuniform " + type + " t;\nout vec4 colour;\n" +
+                             "void main() { colour = texture(t, " + at + "); }\n";
+    const Shader shader = compiled_in_c(context.get(), text_source(text.c_str()));
+    REQUIRE(shader != nullptr);
+    const int status = softfocus_set_texture(context.get(), shader.get(), "t", &texels, &sampler);
+    if (status != SOFTFOCUS_OK) return std::string{softfocus_message(context.get())};
+    const float red = pixel_of<float>(context.get(), shader, SOFTFOCUS_FORMAT_RGBA32F)[0];
+    return std::to_string(static_cast<int>(red));
+  };
+  texels.slices = 6;
+  CHECK(read("samplerCube", "vec3(0, 0, -1)") == "5");
+  CHECK(read("sampler3D", "vec3(0.5, 0.5, 0.7)") == "4");
+  CHECK(read("sampler2DArray", "vec3(0.5, 0.5, 3)") == "3");
+  texels.slice_bytes = 8;
+  CHECK(read("samplerCube", "vec3(0, 0, -1)") == "10");
+  texels.first = memory.data() + 15;
+  texels.slice_bytes = -4;
+  CHECK(read("sampler2DArray", "vec3(0.5, 0.5, 3)") == "12");
+  const auto is_in = [](const std::string& words, const std::string& message) {
+    CAPTURE(message);
+    CHECK(message.find(words) != message.npos);
+  };
+  is_in("texels.slices: 6; 't' is a sampler2D, and reads one", read("sampler2D", "vec2(0)"));
+  texels.slice_bytes = 2;
+  is_in("texels.slice_bytes: 2 is no multiple", read("sampler3D", "vec3(0)"));
+  texels.slice_bytes = 0;
+  texels.slices = 1;
+  is_in("texels.slices: 1; 't' is a samplerCube, and reads six faces",
+        read("samplerCube", "vec3(1)"));
+  texels.slices = -1;
+  is_in("texels.slices: -1; 't' is a sampler3D, and reads 1 to", read("sampler3D", "vec3(0)"));
+  texels.slices = 6;
+  texels.width = 2;
+  is_in("'t' is a samplerCube, of square faces", read("samplerCube", "vec3(1)"));
+}
+
 TEST_CASE("the C interface: wrong arguments of shaders are refused by name") {
   if (is_glsl_missing()) return;
   const Context context = open_context(1);
@@ -523,7 +573,7 @@ TEST_CASE("the C interface: wrong arguments of shaders are refused by name") {
   const Shader cube = compiled_in_c(context.get(), source);
   texels = texels_of(image, SOFTFOCUS_FORMAT_RGBA16F);
   status = softfocus_set_texture(context.get(), cube.get(), "sky", &texels, nullptr);
-  is_refused("name: 'sky' is a cube or has layers");
+  is_refused("texels.slices: 0; 'sky' is a samplerCube, and reads six faces");
 
   const softfocus_texels first = texels_of(image, SOFTFOCUS_FORMAT_RGBA16F);
   softfocus_texels second = texels_of(other, SOFTFOCUS_FORMAT_RGBA16F);

@@ -3,6 +3,7 @@
 #include "raster/shaders/glsl/glsl.h"
 #include "tests/support/cli_refused.h"
 #include "tests/support/cli_render.h"
+#include "tests/support/scene_test_files.h"
 #include "tests/support/skip.h"
 
 using namespace softfocus;
@@ -215,6 +216,51 @@ TEST_CASE("apply --shader: what is wrong is one line, with the shader's or the o
   }
   CHECK(read_file(one) == kept);
   CHECK(read_file(all.picture) == before);
+}
+
+TEST_CASE("apply --texture: a strip of slices for a sampler3D, six squares for a samplerCube") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const Shaders all;
+  // The first slice or face is red, the others are green.
+  const auto strip = [&](const char* name, int count) {
+    write_file(all.directory.file(name), test::png_bytes(count, 1));
+    return all.directory.file(name);
+  };
+  const std::string two = strip("two.png", 2), six = strip("six.png", 6);
+  const std::string body =
+      "texture(lut, vec3(0.5, 0.5, 0.75)).g, texture(sky, vec3(1.0, 0.0, 0.0)).r,\n"
+      "         texture(sky, vec3(-1.0, 0.0, 0.0)).r, 1.0);\n}\n";
+  const std::string uniforms = "uniform sampler3D lut;\nuniform samplerCube sky;\n";
+  const std::string plain = all.shader(
+      "plain.frag", "#version 330\n" + uniforms + "out vec4 c;\nvoid main() {\n  c = vec4(" + body);
+  const std::string toy =
+      all.shader("toy.frag", "precision highp sampler3D;\n" + uniforms +
+                                 "void mainImage(out vec4 c, in vec2 at) {\n  c = vec4(" + body);
+  for (const std::string& shader : {plain, toy}) {
+    const std::string texels =
+        all.applied(shader, {"--texture", "lut=" + two, "--texture", "sky=" + six});
+    CHECK(texels.substr(0, 6) == std::string{"\0\x3C\0\x3C\0\0", 6});
+  }
+  const auto refused = [&](const Words& more, const std::vector<std::string>& said) {
+    check_refused(all.directory, all.apply(plain, "no.npy", more), 1, said);
+  };
+  refused({"--texture", "sky=" + six},
+          {"plain.frag", "'lut' is a sampler3D", "--texture lut=FILE"});
+  refused({"--texture", "lut=" + two, "--texture", "sky=" + two},
+          {"'sky' is a samplerCube", "2 x 1 texels", "six squares in a row"});
+}
+
+TEST_CASE("apply --shader: HLSL") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const Shaders all;
+  const std::string same =
+      all.shader("same.hlsl",
+                 "Texture2D picture;\nSamplerState smooth;\nfloat gain;\n"
+                 "float4 main(float4 at : SV_Position, float2 uv : TEXCOORD0) : SV_Target {\n"
+                 "  return picture.Sample(smooth, uv) * gain;\n}\n");
+  CHECK(all.applied(same, {"--set", "gain=1"}) == Shaders::texels(all.picture));
+  check_refused(all.directory, all.apply(same, "no.npy", {"--set", "smooth=1"}), 2,
+                {"there are gain"});
 }
 
 TEST_CASE("apply --shader: of several shaders a setting is for those that have it") {

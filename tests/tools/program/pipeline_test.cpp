@@ -4,6 +4,7 @@
 #include "tests/support/cli_refused.h"
 #include "tests/support/cli_render.h"
 #include "tests/support/gl_drivers.h"
+#include "tests/support/scene_test_files.h"
 #include "tests/support/skip.h"
 
 using namespace softfocus;
@@ -143,6 +144,32 @@ TEST_CASE("chart and stress have a pipeline beside the methods, anew when it cha
     });
     REQUIRE(ours != results.end());
     CHECK((*ours)["value"] == of["value"]);
+  }
+}
+
+TEST_CASE("crosscheck --pipeline: volumes, cubes and arrays of files are a driver's to the bit") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  if (!has_driver("llvmpipe")) return;
+  const TemporaryDirectory directory;
+  write_file(directory.file("strip.png"), test::png_bytes(24, 4));
+  write_file(directory.file("slices.frag"),
+             "#version 330\nuniform sampler2D picture;\nuniform sampler3D lut;\n"
+             "uniform sampler2DArray layers;\nuniform samplerCube sky;\nout vec4 c;\n"
+             "void main() {\n  vec4 p = texelFetch(picture, ivec2(gl_FragCoord.xy), 0);\n"
+             "  c = texture(lut, p.rgb) + texture(layers, vec3(p.rg, 2.0));\n"
+             "  c += textureLod(sky, normalize(p.rgb - 0.4), p.b);\n}\n");
+  write_file(directory.file("slices.toml"),
+             "[textures]\nstrip = \"strip.png\"\n[[pass]]\nshader = \"slices.frag\"\n"
+             "inputs = { lut = { from = \"strip\", wrap = \"mirror\" }, layers = \"strip\", "
+             "sky = { from = \"strip\", filter = \"trilinear\" } }\n");
+  const ProgramRun run = run_program({"crosscheck", "--driver", "llvmpipe", "--pipeline",
+                                      directory.file("slices.toml"), "--quick", "--json"});
+  CAPTURE(run.err);
+  CHECK(run.status == 0);
+  for (const json& of : json::parse(run.out)) {
+    CAPTURE(of.dump());
+    CHECK(of["values"] > 0);
+    CHECK(of["differing"] == 0);
   }
 }
 

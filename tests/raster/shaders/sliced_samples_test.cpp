@@ -1,0 +1,206 @@
+// Shaders that read arrays, volumes and cubes: the oracle's bits on every vector unit, sizes and
+// texels, and what is refused.
+
+#include <doctest/doctest.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "raster/images/sliced_texture.h"
+#include "raster/images/texel.h"
+#include "raster/shaders/glsl/glsl.h"
+#include "raster/shaders/shader.h"
+#include "tests/support/random.h"
+#include "tests/support/shader_checks.h"
+#include "tests/support/skip.h"
+#include "tests/support/sliced_oracle.h"
+
+using namespace softfocus;
+using namespace softfocus::test;
+
+namespace {
+
+UserShader slices_shader(const std::string& declared, const std::string& body) {
+  const GlslSource source{.name = "slices.frag",
+                          .text =
+                              "#version 450\nlayout(location = 0) in vec2 uv;\n"
+                              "layout(location = 0) out vec4 result;\nuniform " +
+                              declared + " t;\nvoid main() {\n" + body + "\n}\n"};
+  return make_shader(compile_glsl(source, [](const std::string&) { return std::nullopt; }).words);
+}
+
+Texture slices_of_noise(TextureShape shape, int size, int count) {
+  Random random{3};
+  std::vector<Image> slices;
+  for (int i = 0; i < count; ++i) {
+    slices.push_back(random_texture(Format::rgba16f, size, random).levels[0]);
+  }
+  Texture texture = make_sliced_texture(shape, std::move(slices));
+  generate_mipmaps(texture, {});
+  return texture;
+}
+
+constexpr int kSlicesWidth = 40, kSlicesHeight = 6;
+
+Image drawn_slices(const UserShader& shader, const ShaderTexture& texture, Isa isa) {
+  Image found = make_image(Format::rgba32f, kSlicesWidth, kSlicesHeight);
+  const ImageView view = found;
+  ThreadPool pool{1, isa};
+  run_shader(compile_shader(shader, shader.uniforms.words),
+             {.textures = {&texture, 1}, .targets = {&view, 1}}, pool);
+  return found;
+}
+
+/// A pixel's place in the picture, as the shader has it.
+glm::vec2 uv_of(int x, int y) {
+  return {(static_cast<float>(x) + 0.5f) / static_cast<float>(kSlicesWidth),
+          (static_cast<float>(y) + 0.5f) / static_cast<float>(kSlicesHeight)};
+}
+
+/// Checks every unit against a pixel's value.
+void check_slices(const UserShader& shader, const ShaderTexture& texture,
+                  const std::function<glm::vec4(int, int)>& expected) {
+  Image image = make_image(Format::rgba32f, kSlicesWidth, kSlicesHeight);
+  for (int y = 0; y < kSlicesHeight; ++y) {
+    for (int x = 0; x < kSlicesWidth; ++x) store_texel(image, x, y, expected(x, y), {});
+  }
+  for (const Isa isa : available_isas()) {
+    CAPTURE(isa_name(isa));
+    CHECK(first_difference(drawn_slices(shader, texture, isa), image) == "");
+  }
+}
+
+std::string refusal_of(const std::string& declared, const std::string& body) {
+  try {
+    const UserShader shader = slices_shader(declared, body);
+    compile_shader(shader, shader.uniforms.words);
+  } catch (const ShaderError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("texture() of a volume and a cube takes its level from a block's first pixel") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  for (const TextureShape shape : {TextureShape::volume, TextureShape::cube}) {
+    const bool is_cube = shape == TextureShape::cube;
+    const Texture texture = slices_of_noise(shape, 16, is_cube ? 6 : 9);
+    const Sampler sampler{Filter::trilinear, Wrap::repeat, Wrap::mirrored_repeat,
+                          Wrap::clamp_to_edge};
+    // 3 and 7 are exact in both, and so is what comes of them by the same operations.
+    const UserShader shader = slices_shader(
+        std::string{sampler_name(shape)},
+        "result = texture(t, vec3(uv.x * 7.0 - 3.0, uv.y * 3.0 - 1.0, uv.x - uv.y));");
+    const auto place = [](int x, int y) {
+      const glm::vec2 uv = uv_of(x, y);
+      return glm::vec3{uv.x * 7.0f - 3.0f, uv.y * 3.0f - 1.0f, uv.x - uv.y};
+    };
+    check_slices(shader, {.texture = &texture, .sampler = sampler}, [&](int x, int y) {
+      const int column = x & ~1, row = y & ~1;
+      const glm::vec3 at = place(column, row);
+      const float lod = sliced_level_of_detail(texture, at, place(column + 1, row) - at,
+                                               place(column, row + 1) - at, {});
+      return SlicedOracle{texture, sampler}.sampled(place(x, y), lod);
+    });
+  }
+}
+
+TEST_CASE("textureLod, textureGrad and offsets of a volume; textureLod of a cube") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const Sampler sampler{Filter::trilinear};
+  const Texture volume = slices_of_noise(TextureShape::volume, 8, 4);
+  const Texture cube = slices_of_noise(TextureShape::cube, 8, 6);
+  const auto at = [](int x, int y) { return glm::vec3{uv_of(x, y), 0.625f}; };
+  check_slices(slices_shader("sampler3D", "result = textureLod(t, vec3(uv, 0.625), uv.x * 4.0);"),
+               {.texture = &volume, .sampler = sampler}, [&](int x, int y) {
+                 return SlicedOracle{volume, sampler}.sampled(at(x, y), uv_of(x, y).x * 4.0f);
+               });
+  check_slices(slices_shader("samplerCube", "result = textureLod(t, vec3(uv, 0.625), uv.x * 4.0);"),
+               {.texture = &cube, .sampler = sampler}, [&](int x, int y) {
+                 return SlicedOracle{cube, sampler}.sampled(at(x, y), uv_of(x, y).x * 4.0f);
+               });
+  check_slices(
+      slices_shader("sampler3D",
+                    "result = textureGradOffset(t, vec3(uv, 0.625), vec3(0.25, 0.0, 0.0),\n"
+                    "                           vec3(0.0, 0.0, 0.75), ivec3(1, 0, -1));"),
+      {.texture = &volume, .sampler = sampler}, [&](int x, int y) {
+        const float lod =
+            sliced_level_of_detail(volume, at(x, y), {0.25f, 0, 0}, {0, 0, 0.75f}, {});
+        const glm::vec3 moved{at(x, y).x + 1.0f / 8.0f, at(x, y).y, at(x, y).z + -1.0f / 4.0f};
+        return SlicedOracle{volume, sampler}.sampled(moved, lod);
+      });
+}
+
+TEST_CASE("texelFetch, textureSize and gathers reach every slice, and 0 lies beyond them") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const Texture volume = slices_of_noise(TextureShape::volume, 8, 5);
+  const Texture array = slices_of_noise(TextureShape::array, 8, 5);
+  const Texture cube = slices_of_noise(TextureShape::cube, 8, 6);
+  const std::string fetch =
+      "ivec2 p = ivec2(gl_FragCoord.xy); result = texelFetch(t, ivec3(p.x % 9, p.y, p.x % 7 - 1), "
+      "1);";
+  const auto fetched = [&](const Texture& texture) {
+    check_slices(slices_shader(std::string{sampler_name(texture.shape)}, fetch),
+                 {.texture = &texture}, [&](int x, int y) {
+                   const int u = x % 9, k = x % 7 - 1;
+                   const bool inside = u < 4 && y < 4 && k >= 0 && k < slice_count(texture, 1);
+                   return inside ? load_texel(slice_level(texture, k, 1), u, y) : glm::vec4{0.0f};
+                 });
+  };
+  fetched(volume);
+  fetched(array);
+  const auto constant = [](glm::vec4 value) { return [=](int, int) { return value; }; };
+  check_slices(
+      slices_shader("sampler3D", "result = vec4(textureSize(t, 1), textureQueryLevels(t));"),
+      {.texture = &volume}, constant({4, 4, 2, 4}));
+  check_slices(slices_shader("sampler2DArray", "result = vec4(textureSize(t, 1), 0.0);"),
+               {.texture = &array}, constant({4, 4, 5, 0}));
+  check_slices(slices_shader("samplerCube", "result = vec4(textureSize(t, 2), 0.0, 0.0);"),
+               {.texture = &cube}, constant({2, 2, 0, 0}));
+  check_slices(
+      slices_shader("sampler2DArray", "result = textureGather(t, vec3(0.5, 0.5, 3.4), 1);"),
+      {.texture = &array},
+      constant({load_texel(array.behind[2].levels[0], 3, 4).y,
+                load_texel(array.behind[2].levels[0], 4, 4).y,
+                load_texel(array.behind[2].levels[0], 4, 3).y,
+                load_texel(array.behind[2].levels[0], 3, 3).y}));
+}
+
+TEST_CASE("shadow samplers of arrays and cubes compare the filtered texel") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  std::vector<Image> layers;
+  for (int i = 0; i < 6; ++i) {
+    layers.push_back(make_image(Format::r32f, 2, 2));
+    clear_image(layers.back(), glm::vec4{static_cast<float>(i) / 8.0f}, {});
+  }
+  const Texture array = make_sliced_texture(TextureShape::array, layers);
+  const Texture cube = make_sliced_texture(TextureShape::cube, layers);
+  check_slices(slices_shader("sampler2DArrayShadow",
+                             "float k = floor(gl_FragCoord.x);\n"
+                             "result = vec4(texture(t, vec4(uv, k, 0.25)));"),
+               {.texture = &array, .compare = Compare::less},
+               [](int x, int) { return glm::vec4{x >= 3 ? 1.0f : 0.0f}; });
+  check_slices(
+      slices_shader("samplerCubeShadow", "result = vec4(texture(t, vec4(0, 0, -1, uv.x)));"),
+      {.texture = &cube, .compare = Compare::less},
+      [](int x, int y) { return glm::vec4{uv_of(x, y).x < 0.625f ? 1.0f : 0.0f}; });
+}
+
+TEST_CASE("textures of another shape than the shader's, and samplers that are none, are refused") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const Texture volume = slices_of_noise(TextureShape::volume, 4, 2);
+  const UserShader flat = slices_shader("sampler2D", "result = texture(t, uv);");
+  CHECK_THROWS_WITH_AS(drawn_slices(flat, {.texture = &volume}, Isa::scalar),
+                       "texture 0 is one of a sampler3D, and the shader reads a sampler2D",
+                       ShaderError);
+  CHECK(refusal_of("samplerCubeArray", "result = texture(t, vec4(uv, 1.0, 0.0));") ==
+        "slices.frag:6: samplerCubeArray is not supported; samplerCube and sampler2DArray are");
+  CHECK(refusal_of("sampler1DArray", "result = texture(t, uv);") ==
+        "slices.frag:6: sampler1DArray is not supported; sampler2DArray is");
+  CHECK(
+      refusal_of("samplerCube", "result = textureGather(t, vec3(uv, 1.0));") ==
+      "slices.frag:6: textureGather of a samplerCube is not supported; of a sampler2DArray it is");
+}
