@@ -7,7 +7,7 @@
 
 namespace softfocus {
 
-// NOLINTBEGIN(readability-identifier-naming): OpenGL's names
+// NOLINTBEGIN(readability-identifier-naming,bugprone-macro-parentheses): OpenGL's names
 using GLenum = unsigned;
 using GLbitfield = unsigned;
 using GLuint = unsigned;
@@ -141,7 +141,7 @@ struct GlFunctions {
   SOFTFOCUS_GL_FUNCTIONS(SOFTFOCUS_GL_MEMBER)
 #undef SOFTFOCUS_GL_MEMBER
 };
-// NOLINTEND(readability-identifier-naming)
+// NOLINTEND(readability-identifier-naming,bugprone-macro-parentheses)
 
 /// Of the context that is current in this thread: OpenGL itself has it so.
 const GlFunctions*& current_gl();

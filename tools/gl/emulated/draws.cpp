@@ -195,7 +195,14 @@ void draw_points(ShaderDraw draw, std::uint32_t count) {
   draw_triangles(draw, indices, static_cast<std::uint32_t>(vertices.size() / numbers));
 }
 
-/// Numbers of vertices, by threes.
+void switch_to(GLenum what, bool on) {
+  EmulatedGl& gl = emulated::gl();
+  if (what == GL_DEPTH_TEST) gl.tests_depth = on;
+  if (what == GL_CULL_FACE) gl.culls = on;
+  if (what == GL_BLEND) gl.blends = on;
+}
+
+/// `indices`: numbers of vertices, by threes.
 void draw_listed_vertices(GLenum mode, const std::vector<std::uint32_t>& indices,
                           std::uint32_t vertex_count) {
   EmulatedGl& gl = emulated::gl();
@@ -259,16 +266,8 @@ void VertexAttribPointer(GLuint location, GLint components, GLenum /*type*/,
 void GenVertexArrays(GLsizei /*count*/, GLuint* names) { *names = 1; }
 void BindVertexArray(GLuint /*array*/) {}
 
-void Enable(GLenum what) {
-  if (what == GL_DEPTH_TEST) gl().tests_depth = true;
-  if (what == GL_CULL_FACE) gl().culls = true;
-  if (what == GL_BLEND) gl().blends = true;
-}
-void Disable(GLenum what) {
-  if (what == GL_DEPTH_TEST) gl().tests_depth = false;
-  if (what == GL_CULL_FACE) gl().culls = false;
-  if (what == GL_BLEND) gl().blends = false;
-}
+void Enable(GLenum what) { switch_to(what, true); }
+void Disable(GLenum what) { switch_to(what, false); }
 void DepthFunc(GLenum test) {
   gl().depth.test = test == GL_ALWAYS ? Compare::always : Compare::less;
 }
