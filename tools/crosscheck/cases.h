@@ -31,6 +31,7 @@ struct Case {
   bool quick;     ///< part of --quick
   bool slow_too;  ///< small enough for a driver that is slow
   std::function<void(const Bench&, Tally&)> run;
+  bool needs_doubles = false;  ///< in shaders, which the emulated GPU does not have
 };
 
 /// All cases, in the order of the pipeline's stages.

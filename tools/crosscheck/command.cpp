@@ -14,6 +14,7 @@
 #include "tools/crosscheck/run_cases.h"
 #include "tools/files/json.h"
 #include "tools/files/whole_file.h"
+#include "tools/gl/driver/context.h"
 #include "tools/options/method_options.h"
 #include "tools/options/run_options.h"
 
@@ -53,25 +54,26 @@ ChosenProfile profile_for(const Driver& driver, const CrosscheckOptions& options
   return {std::string(driver.profile), "", find_profile(driver.profile).value()};
 }
 
-// Without --driver, the drivers whose profile is known. Checks the options first, before a driver
+// Without --driver, the machine's drivers whose profile is known, or if the build has none, the
+// emulated GPU. Checks the options first, before a driver
 // has worked for minutes.
 std::vector<DriverWork> planned_work(const CrosscheckOptions& options) {
   std::vector<const Driver*> chosen = options.drivers;
   if (chosen.empty()) {
     for (const Driver& driver : drivers()) {
-      if (!driver.profile.empty()) chosen.push_back(&driver);
+      if (!driver.profile.empty() && driver.is_emulated != has_egl()) chosen.push_back(&driver);
     }
   }
   std::vector<DriverWork> work;
   work.reserve(chosen.size());
   for (const Driver* driver : chosen) work.push_back({driver, profile_for(*driver, options), 0});
-  if (matching_cases(options.cases, options.pipeline, false, false) == 0) {
+  if (matching_cases(options.cases, options.pipeline, false, nullptr) == 0) {
     throw UsageError("--case '" + options.cases +
                      "' matches no case; names look like coverage/slivers-20000, and "
                      "--case 'coverage/*' takes a whole stage");
   }
   for (DriverWork& one : work) {
-    one.cases = matching_cases(options.cases, options.pipeline, options.quick, one.driver->slow);
+    one.cases = matching_cases(options.cases, options.pipeline, options.quick, one.driver);
   }
   return work;
 }
@@ -234,13 +236,15 @@ Command add_crosscheck_command(CLI::App& program) {
                                  "Compare the emulation with GL drivers, value by "
                                  "value; status 0 equal, 1 different, 2 error");
   const auto options = std::make_shared<CrosscheckOptions>();
-  add_driver_option(*parser, "Driver to compare with, may be repeated (default: Mesa's four)",
-                    [options](const Driver& driver) {
-                      auto& chosen = options->drivers;
-                      if (std::find(chosen.begin(), chosen.end(), &driver) == chosen.end()) {
-                        chosen.push_back(&driver);
-                      }
-                    });
+  add_driver_option(
+      *parser,
+      "Driver to compare with, may be repeated (default: Mesa's four; without libepoxy, emulated)",
+      [options](const Driver& driver) {
+        auto& chosen = options->drivers;
+        if (std::find(chosen.begin(), chosen.end(), &driver) == chosen.end()) {
+          chosen.push_back(&driver);
+        }
+      });
   add_profile_option(*parser, "Compare with this profile (default: the driver's own)",
                      [options](const ChosenProfile& chosen) { options->profile = chosen; });
   add_text(*parser, "--case", "GLOB", "Only cases whose STAGE/NAME matches, e.g. 'coverage/*'",

@@ -3,6 +3,7 @@
 #include "tools/bench/repeated_on_gl.h"
 #include "tools/crosscheck/probe.h"
 #include "tools/crosscheck/run_cases.h"
+#include "tools/gl/driver/context.h"
 #include "tools/gl/frame_on_gl.h"
 
 namespace softfocus {
@@ -19,9 +20,11 @@ namespace {
 DriverRun run_cases(const CrosscheckWork&, const std::function<void(const CaseResult&)>&) {
   refuse();
 }
-int matching_cases(const std::string&, const std::string&, bool, bool) { refuse(); }
+int matching_cases(const std::string&, const std::string&, bool, const Driver*) { refuse(); }
 
 Probe probe_driver(const Driver&) { refuse(); }
+
+bool has_egl() { return false; }
 
 struct FrameOnGl::State {};
 FrameOnGl::FrameOnGl(const Driver&, Shaders) { refuse(); }

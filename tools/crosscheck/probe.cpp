@@ -286,7 +286,8 @@ std::string profile_name(const std::string& renderer) {
 Probe probe_driver(const Driver& driver) {
   const GlContext gl{driver};
   ThreadPool pool{hardware_threads()};
-  return probe_context(gl, is_software(driver) ? std::string(driver.name) + "-probed" : "", pool);
+  const bool is_named = is_software(driver) || driver.is_emulated;
+  return probe_context(gl, is_named ? std::string(driver.name) + "-probed" : "", pool);
 }
 #endif
 

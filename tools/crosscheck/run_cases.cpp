@@ -12,7 +12,7 @@ namespace softfocus {
 namespace {
 
 std::vector<Case> chosen_cases(const std::string& pattern, const std::string& pipeline, bool quick,
-                               bool slow) {
+                               const Driver* driver) {
   std::vector<Case> all, chosen;
   if (pipeline.empty()) {
     all = crosscheck_cases();
@@ -21,7 +21,9 @@ std::vector<Case> chosen_cases(const std::string& pattern, const std::string& pi
   }
   for (Case& one : all) {
     const std::string name = one.stage + '/' + one.name;
-    const bool wanted = (one.quick || !quick) && (one.slow_too || !slow);
+    const bool suits = driver == nullptr || ((one.slow_too || !driver->slow) &&
+                                             !(one.needs_doubles && driver->is_emulated));
+    const bool wanted = (one.quick || !quick) && suits;
     if (wanted && ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0) chosen.push_back(one);
   }
   return chosen;
@@ -92,11 +94,11 @@ CaseResult result_of(const Json& line, const CrosscheckWork& work) {
 
 // In the driver's process.
 void compare_all(const CrosscheckWork& work, const SendLine& send) {
-  const GlContext gl{work.driver};
+  const GlContext gl{work.driver, {}, work.profile};
   send(json_text({{"renderer", gl.renderer() + ", OpenGL " + gl.version()}}));
   ThreadPool pool{work.threads};
   const Bench bench{gl, work.shaders, work.profile, pool};
-  for (const Case& one : chosen_cases(work.cases, work.pipeline, work.quick, work.driver.slow)) {
+  for (const Case& one : chosen_cases(work.cases, work.pipeline, work.quick, &work.driver)) {
     Tally tally;
     std::string error;
     bool has_picture = false;
@@ -130,8 +132,9 @@ DriverRun run_cases(const CrosscheckWork& work,
   return run;
 }
 
-int matching_cases(const std::string& pattern, const std::string& pipeline, bool quick, bool slow) {
-  return static_cast<int>(chosen_cases(pattern, pipeline, quick, slow).size());
+int matching_cases(const std::string& pattern, const std::string& pipeline, bool quick,
+                   const Driver* driver) {
+  return static_cast<int>(chosen_cases(pattern, pipeline, quick, driver).size());
 }
 
 }  // namespace softfocus

@@ -48,7 +48,8 @@ struct DriverRun {
 DriverRun run_cases(const CrosscheckWork& work,
                     const std::function<void(const CaseResult&)>& report);
 
-/// How many cases the pattern stands for, of all or of a pipeline, on a driver of that speed.
-int matching_cases(const std::string& pattern, const std::string& pipeline, bool quick, bool slow);
+/// How many cases the pattern stands for, of all or of a pipeline, on a driver, or on any.
+int matching_cases(const std::string& pattern, const std::string& pipeline, bool quick,
+                   const Driver* driver);
 
 }  // namespace softfocus

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "raster/numbers/profile.h"
 #include "tests/support/gl_drivers.h"
 #include "tools/files/profile_file.h"
 #include "tools/gl/driver/driver.h"
@@ -30,9 +31,9 @@ nlohmann::json quick_results(const std::string& driver) {
   return nlohmann::json::parse(run.out);
 }
 
-void check_all_equal(const std::string& driver) {
+void check_all_equal(const std::string& driver, const Words& without = {}) {
   if (!has_driver(driver)) return;
-  std::set<std::string> stages;
+  std::set<std::string> stages{without.begin(), without.end()};
   for (const auto& entry : quick_results(driver)) {
     CAPTURE(entry.dump());
     CHECK(entry["driver"] == driver);
@@ -107,11 +108,15 @@ void write_shaders(const TemporaryDirectory& directory, const std::string& shade
 }
 
 void check_shader_caught(const std::string& cases, const std::string& shader,
-                         const std::string& from, const std::string& to) {
+                         const std::string& from, const std::string& to,
+                         const std::string& driver = "emulated") {
   CAPTURE(cases + ": " + to);
   const TemporaryDirectory directory;
   write_shaders(directory, shader, from, to);
-  const ProgramRun run = crosscheck("llvmpipe", cases, {"--shaders", directory.path()});
+  Words more{"--shaders", directory.path()};
+  // Stores that truncate notice more.
+  if (driver == "emulated") more.insert(more.end(), {"--profile", "llvmpipe"});
+  const ProgramRun run = crosscheck(driver, cases, more);
   CHECK(run.status == 1);
   CHECK(run.err == "");
 }
@@ -131,6 +136,21 @@ TEST_CASE("crosscheck: softpipe and its profile give the same bits" * doctest::t
 TEST_CASE("crosscheck: lavapipe and its profile, which is llvmpipe's, give the same bits" *
           doctest::test_suite("long")) {
   check_all_equal("lavapipe");
+}
+
+TEST_CASE("crosscheck: our GLSL on the emulated GPU gives the bits of its C++ form") {
+  check_all_equal("emulated", {"shadow-map", "shadow-volume"});
+}
+TEST_CASE("crosscheck: our GLSL on the emulated GPU gives its C++ form's bits by any profile" *
+          doctest::test_suite("long")) {
+  if (!has_driver("emulated")) return;
+  for (const NamedProfile& profile : profiles()) {
+    CAPTURE(profile.name);
+    const ProgramRun run = run_program(
+        {"crosscheck", "--driver", "emulated", "--profile", std::string{profile.name}, "--quick"});
+    CHECK(run.status == 0);
+    CHECK(run.err == "");
+  }
 }
 
 TEST_CASE("crosscheck: another rounding, contraction or rule in a profile is caught" *
@@ -155,9 +175,8 @@ TEST_CASE("crosscheck: another rounding, contraction or rule in a profile is cau
   check_profile_caught("frame/figures-128x96-frame7-two-pass", "half_store", "\"nearest-even\"");
 }
 
-TEST_CASE("crosscheck: another order of operations in a shader is caught" *
-          doctest::test_suite("long")) {
-  if (!has_driver("llvmpipe")) return;
+TEST_CASE("crosscheck: another order of operations in a shader is caught") {
+  if (!has_driver("emulated")) return;
   // 1/512 texel: one step of an 8-bit weight for every other sample.
   check_shader_caught("bilinear-rgba8/64x32-repeat", "sample.frag", "at.xy",
                       "at.xy + vec2(1.0 / 32768.0, 0.0)");
@@ -176,18 +195,28 @@ TEST_CASE("crosscheck: another order of operations in a shader is caught" *
                       "(a.x * b.x + a.y * b.y) + a.z * b.z", "a.x * b.x + (a.y * b.y + a.z * b.z)");
   check_shader_caught("frame/figures-128x96-frame7-two-pass", "weights.glsl",
                       "depth_m - focus_m) / depth_m", "depth_m - focus_m) * (1.0 / depth_m)");
-  check_shader_caught("shadow-map/figures 97x61*", "map_side.frag", "double(gl_FragCoord.x)",
-                      "double(gl_FragCoord.x - 0.5)");
-  check_shader_caught("shadow-map/figures 97x61*", "map_side.frag", "most < raised ? most : raised",
-                      "raised");
-  check_shader_caught("shadow-map/figures 97x61*", "map_lookup.frag", "kernel / 2", "kernel");
-  check_shader_caught("shadow-volume/near-fence 65x41 z-fail", "volume.frag", "q * of_w - finite",
-                      "q * of_w");
   check_shader_caught("relief/figures 97x61", "relief_map.frag", "u * 256.0 + 0.5", "u * 256.0");
   check_shader_caught("march/figures 97x61*", "relief_march.frag", "depth_m * way + 0.5",
                       "depth_m * way");
   check_shader_caught("octahedral/figures 97x61*", "octahedral.frag", "1.0 - after",
                       "0.999 - after");
+  check_shader_caught("reprojection/forward-61x43", "forward_reproject.vert", "order) / 131072.0",
+                      "order) / -131072.0");
+  check_shader_caught("attributes/inside", "interpolate.vert", "in_window = linear_value",
+                      "in_window = 1.0000002 * linear_value");
+}
+
+TEST_CASE("crosscheck: another order of operations in doubles is caught" *
+          doctest::test_suite("long")) {
+  if (!has_driver("llvmpipe")) return;
+  check_shader_caught("shadow-map/figures 97x61*", "map_side.frag", "double(gl_FragCoord.x)",
+                      "double(gl_FragCoord.x - 0.5)", "llvmpipe");
+  check_shader_caught("shadow-map/figures 97x61*", "map_side.frag", "most < raised ? most : raised",
+                      "raised", "llvmpipe");
+  check_shader_caught("shadow-map/figures 97x61*", "map_lookup.frag", "kernel / 2", "kernel",
+                      "llvmpipe");
+  check_shader_caught("shadow-volume/near-fence 65x41 z-fail", "volume.frag", "q * of_w - finite",
+                      "q * of_w", "llvmpipe");
 }
 
 TEST_CASE("crosscheck: a difference is told with its pixel, both values and a picture") {
@@ -226,16 +255,34 @@ TEST_CASE("crosscheck: a difference is told with its pixel, both values and a pi
 }
 
 TEST_CASE("crosscheck: a shader that the driver refuses fails its cases, and the rest still runs") {
-  if (!has_driver("llvmpipe")) return;
+  for (const char* driver : {"llvmpipe", "emulated"}) {
+    CAPTURE(driver);
+    if (!has_driver(driver)) continue;
+    const TemporaryDirectory directory;
+    write_shaders(directory, "two_pass.frag", "void main()", "void main(");
+    const ProgramRun run = crosscheck(driver, "*/one-pixel", {"--shaders", directory.path()});
+    CHECK(run.status == 2);
+    CHECK(contains(run.out, "two-pass/one-pixel"));
+    CHECK(contains(run.out,
+                   "failed: " + directory.file("two_pass.frag") + ":"));  // the line in the file
+    CHECK(contains(run.out, "one-pass/one-pixel"));
+    CHECK(contains(run.out, "1 failed"));
+  }
+}
+
+TEST_CASE("crosscheck: the emulated GPU names the file that a shader includes, and its line") {
+  if (!has_driver("emulated")) return;
   const TemporaryDirectory directory;
-  write_shaders(directory, "two_pass.frag", "void main()", "void main(");
-  const ProgramRun run = crosscheck("llvmpipe", "*/one-pixel", {"--shaders", directory.path()});
+  write_shaders(directory, "weights.glsl", "gather.colour / gather.weight", "gather.colour / none");
+  const std::string text = read_file(directory.file("weights.glsl"));
+  const auto line =
+      1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find("/ none")),
+                     '\n');
+  const ProgramRun run =
+      crosscheck("emulated", "two-pass/one-pixel", {"--shaders", directory.path()});
   CHECK(run.status == 2);
-  CHECK(contains(run.out, "two-pass/one-pixel"));
-  CHECK(contains(run.out,
-                 "failed: " + directory.file("two_pass.frag") + ":"));  // the line in the file
-  CHECK(contains(run.out, "one-pass/one-pixel"));
-  CHECK(contains(run.out, "1 failed"));
+  CHECK(contains(run.out, "failed: " + directory.file("weights.glsl") + ":" + std::to_string(line) +
+                              ": 'none': undeclared"));
 }
 
 TEST_CASE("crosscheck: a driver that is not there is told in one line, and the others run") {
@@ -308,7 +355,8 @@ TEST_CASE("crosscheck: bad options are refused with what would be right") {
     CHECK(is_one_line(run.err));
     CHECK(contains(run.err, part));
   };
-  refused({"--driver", "voodoo"}, "there are llvmpipe, llvmpipe-sse41, softpipe, lavapipe, gpu");
+  refused({"--driver", "voodoo"},
+          "there are llvmpipe, llvmpipe-sse41, softpipe, lavapipe, emulated, gpu");
   refused({"--driver", "gpu"}, "softfocus probe --driver gpu makes one");
   refused({"--profile", "voodoo"}, "there are ieee, ");
   refused({"--profile", "./none.toml"}, "./none.toml: no such file");
@@ -327,8 +375,8 @@ TEST_CASE("crosscheck: bad options are refused with what would be right") {
 }
 
 TEST_CASE("crosscheck: a pattern that matches no case is refused") {
-  if (!has_driver("llvmpipe")) return;
-  const ProgramRun run = crosscheck("llvmpipe", "store");
+  if (!has_driver("emulated")) return;
+  const ProgramRun run = crosscheck("emulated", "store");
   CHECK(run.status == 2);
   CHECK(is_one_line(run.err));
   CHECK(contains(run.err, "--case 'store' matches no case"));
@@ -346,10 +394,10 @@ TEST_CASE("crosscheck: a driver for which nothing was to be compared does not co
 }
 
 TEST_CASE("crosscheck: a shader that includes itself is told, and the rest still runs") {
-  if (!has_driver("llvmpipe")) return;
+  if (!has_driver("emulated")) return;
   const TemporaryDirectory directory;
   write_file(directory.file("two_pass.frag"), "#include \"two_pass.frag\"\n");
-  const ProgramRun run = crosscheck("llvmpipe", "*/one-pixel", {"--shaders", directory.path()});
+  const ProgramRun run = crosscheck("emulated", "*/one-pixel", {"--shaders", directory.path()});
   CHECK(run.status == 2);
   CHECK(contains(run.out, "two_pass.frag: includes itself"));
   CHECK(contains(run.out, "one-pass/one-pixel"));

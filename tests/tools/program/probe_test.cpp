@@ -29,7 +29,7 @@ void check_same_arithmetic(const Profile& a, const Profile& b) {
 }
 
 // Probes into a file and reads it back; its text is returned.
-std::string check_probe_finds_profile(const std::string& driver) {
+std::string check_probe_finds(const Profile& profile, const std::string& driver) {
   const TemporaryDirectory directory;
   const std::string file = directory.file("probed.toml");
   const ProgramRun run = run_program({"probe", "--driver", driver, "-o", file});
@@ -37,8 +37,12 @@ std::string check_probe_finds_profile(const std::string& driver) {
   CHECK(run.out + run.err == "");
   const ChosenProfile probed = load_profile(file);
   CHECK(probed.name == driver + "-probed");
-  check_same_arithmetic(probed.profile, find_profile(find_driver(driver)->profile).value());
+  check_same_arithmetic(probed.profile, profile);
   return read_file(file);
+}
+
+std::string check_probe_finds_profile(const std::string& driver) {
+  return check_probe_finds(find_profile(find_driver(driver)->profile).value(), driver);
 }
 
 // One method a driver: crosscheck has all of them on each.
@@ -73,6 +77,12 @@ TEST_CASE("probe: experiments on llvmpipe find its profile, and the file says wh
 TEST_CASE("probe: experiments on llvmpipe held to SSE4.1 find its profile" *
           doctest::test_suite("long")) {
   if (has_driver("llvmpipe-sse41")) check_probe_finds_profile("llvmpipe-sse41");
+}
+TEST_CASE("probe: experiments on the emulated GPU find its profile") {
+  if (!has_driver("emulated")) return;
+  Profile profile;
+  profile.guard_band = 4.0f;  // the widest that is tried
+  check_probe_finds(profile, "emulated");
 }
 TEST_CASE("probe: experiments on lavapipe find llvmpipe's profile" * doctest::test_suite("long")) {
   if (has_driver("lavapipe")) check_probe_finds_profile("lavapipe");
@@ -150,6 +160,9 @@ TEST_CASE("render: --gl llvmpipe-sse41 gives the bits of its profile" *
 }
 TEST_CASE("render: --gl softpipe gives the bits of its profile") {
   check_render_on_gl("softpipe", "pinhole");
+}
+TEST_CASE("render: --gl emulated gives the bits of its profile") {
+  check_render_on_gl("emulated", "two-pass");
 }
 TEST_CASE("render: --gl lavapipe gives the bits of its profile" * doctest::test_suite("long")) {
   check_render_on_gl("lavapipe", "two-pass");

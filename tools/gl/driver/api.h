@@ -1,6 +1,6 @@
 #pragma once
-// OpenGL's functions: libepoxy's, and in a browser WebGL2's, which is OpenGL ES 3.0 without what
-// has no safe form.
+// OpenGL's functions: those of the context that is current, and in a browser WebGL2's, which is
+// OpenGL ES 3.0 without what has no safe form.
 
 #ifdef __EMSCRIPTEN__
 #include <GLES3/gl3.h>
@@ -13,11 +13,103 @@ inline void glClearDepth(double depth) { glClearDepthf(static_cast<float>(depth)
 
 }  // namespace softfocus
 #else
-#include <epoxy/gl.h>
+#include "tools/gl/driver/functions.h"
 
 namespace softfocus {
 
 inline constexpr bool kIsWebGl = false;
+
+// NOLINTBEGIN(readability-identifier-naming): OpenGL's names
+#define SOFTFOCUS_GL_CALL(RESULT, NAME, PARAMETERS, ARGUMENTS) \
+  inline RESULT gl##NAME PARAMETERS { return current_gl()->NAME ARGUMENTS; }
+SOFTFOCUS_GL_FUNCTIONS(SOFTFOCUS_GL_CALL)
+#undef SOFTFOCUS_GL_CALL
+
+// What of its constants we use.
+enum GlConstant : GLenum {
+  GL_FALSE = 0x0,
+  GL_NO_ERROR = 0x0,
+  GL_POINTS = 0x0,
+  GL_ONE = 0x1,
+  GL_TRUE = 0x1,
+  GL_TRIANGLES = 0x4,
+  GL_TRIANGLE_STRIP = 0x5,
+  GL_DEPTH_BUFFER_BIT = 0x100,
+  GL_LESS = 0x201,
+  GL_ALWAYS = 0x207,
+  GL_FRONT = 0x404,
+  GL_BACK = 0x405,
+  GL_INVALID_ENUM = 0x500,
+  GL_INVALID_VALUE = 0x501,
+  GL_OUT_OF_MEMORY = 0x505,
+  GL_INVALID_FRAMEBUFFER_OPERATION = 0x506,
+  GL_CW = 0x900,
+  GL_CCW = 0x901,
+  GL_CULL_FACE = 0xB44,
+  GL_DEPTH_TEST = 0xB71,
+  GL_DITHER = 0xBD0,
+  GL_BLEND = 0xBE2,
+  GL_UNPACK_ALIGNMENT = 0xCF5,
+  GL_PACK_ALIGNMENT = 0xD05,
+  GL_MAX_TEXTURE_SIZE = 0xD33,
+  GL_MAX_VIEWPORT_DIMS = 0xD3A,
+  GL_TEXTURE_2D = 0xDE1,
+  GL_UNSIGNED_BYTE = 0x1401,
+  GL_UNSIGNED_INT = 0x1405,
+  GL_FLOAT = 0x1406,
+  GL_HALF_FLOAT = 0x140B,
+  GL_COLOR = 0x1800,
+  GL_DEPTH = 0x1801,
+  GL_DEPTH_COMPONENT = 0x1902,
+  GL_RED = 0x1903,
+  GL_RGBA = 0x1908,
+  GL_RENDERER = 0x1F01,
+  GL_VERSION = 0x1F02,
+  GL_NEAREST = 0x2600,
+  GL_LINEAR = 0x2601,
+  GL_NEAREST_MIPMAP_NEAREST = 0x2700,
+  GL_LINEAR_MIPMAP_NEAREST = 0x2701,
+  GL_LINEAR_MIPMAP_LINEAR = 0x2703,
+  GL_TEXTURE_MAG_FILTER = 0x2800,
+  GL_TEXTURE_MIN_FILTER = 0x2801,
+  GL_TEXTURE_WRAP_S = 0x2802,
+  GL_TEXTURE_WRAP_T = 0x2803,
+  GL_REPEAT = 0x2901,
+  GL_COLOR_BUFFER_BIT = 0x4000,
+  GL_FUNC_ADD = 0x8006,
+  GL_MAX = 0x8008,
+  GL_RGBA8 = 0x8058,
+  GL_CLAMP_TO_EDGE = 0x812F,
+  GL_TEXTURE_MAX_LEVEL = 0x813D,
+  GL_RG = 0x8227,
+  GL_R8 = 0x8229,
+  GL_R32F = 0x822E,
+  GL_RG16F = 0x822F,
+  GL_MIRRORED_REPEAT = 0x8370,
+  GL_TEXTURE0 = 0x84C0,
+  GL_TEXTURE15 = 0x84CF,
+  GL_RGBA32F = 0x8814,
+  GL_RGBA16F = 0x881A,
+  GL_ARRAY_BUFFER = 0x8892,
+  GL_ELEMENT_ARRAY_BUFFER = 0x8893,
+  GL_STREAM_DRAW = 0x88E0,
+  GL_STATIC_DRAW = 0x88E4,
+  GL_FRAGMENT_SHADER = 0x8B30,
+  GL_VERTEX_SHADER = 0x8B31,
+  GL_COMPILE_STATUS = 0x8B81,
+  GL_LINK_STATUS = 0x8B82,
+  GL_IMPLEMENTATION_COLOR_READ_TYPE = 0x8B9A,
+  GL_IMPLEMENTATION_COLOR_READ_FORMAT = 0x8B9B,
+  GL_SRGB8_ALPHA8 = 0x8C43,
+  GL_DEPTH_COMPONENT32F = 0x8CAC,
+  GL_FRAMEBUFFER_COMPLETE = 0x8CD5,
+  GL_COLOR_ATTACHMENT0 = 0x8CE0,
+  GL_DEPTH_ATTACHMENT = 0x8D00,
+  GL_FRAMEBUFFER = 0x8D40,
+  GL_RGBA32UI = 0x8D70,
+  GL_RGBA_INTEGER = 0x8D99,
+};
+// NOLINTEND(readability-identifier-naming)
 
 }  // namespace softfocus
 #endif

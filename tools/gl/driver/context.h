@@ -1,27 +1,32 @@
 #pragma once
 // OpenGL without a display: a context on one driver, current in the thread that made it, by EGL
-// (context.cpp) or in a browser by WebGL2 (web_context.cpp). No window, no default framebuffer:
-// everything is drawn into textures.
-
-#ifndef __EMSCRIPTEN__
-#include <epoxy/egl.h>
-#endif
+// (egl_context.cpp), on the emulated GPU (context.cpp) or in a browser by WebGL2 (web_context.cpp).
+// No window, no default framebuffer: everything is drawn into textures.
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 
+#include "raster/numbers/profile.h"
 #include "tools/gl/driver/driver.h"
 
 namespace softfocus {
 
+class EmulatedContext;
+
+/// Whether this build opens the machine's drivers.
+bool has_egl();
+
 class GlContext {
  public:
   /// Opens the driver, setting the environment in which it is found: only the first
-  /// driver of a process counts. `threads` is for llvmpipe; without it, it takes all of the
-  /// machine's. Throws DriverError if there is no EGL, no such driver, or if its
-  /// GL is older than 3.3. In a browser there is one driver, whatever `driver` says.
-  explicit GlContext(const Driver& driver, std::optional<int> threads = {});
+  /// driver of a process counts. `threads` is for llvmpipe and the emulated GPU; without it, they
+  /// take all of the machine's. `profile` is what the emulated GPU draws by. Throws DriverError if
+  /// there is no EGL, no such driver, or if its GL is older than 3.3. In a browser there is one
+  /// driver, whatever `driver` says.
+  explicit GlContext(const Driver& driver, std::optional<int> threads = {},
+                     const Profile& profile = {});
   ~GlContext();
   GlContext(const GlContext&) = delete;
   GlContext& operator=(const GlContext&) = delete;
@@ -50,8 +55,9 @@ class GlContext {
 #ifdef __EMSCRIPTEN__
   int context_ = 0;
 #else
-  EGLDisplay display_ = EGL_NO_DISPLAY;
-  EGLContext context_ = EGL_NO_CONTEXT;
+  void* display_ = nullptr;  // EGL's
+  void* context_ = nullptr;
+  std::unique_ptr<EmulatedContext> emulated_;
 #endif
   bool has_linear_varyings_ = true;
   bool has_doubles_ = false;
@@ -61,7 +67,8 @@ class GlContext {
   mutable std::map<std::string, unsigned> programs_;
 
 #ifndef __EMSCRIPTEN__
-  bool open(EGLDisplay display);
+  void open_by_egl(const Driver& driver, std::optional<int> threads);
+  bool open(void* display);
 #endif
   void close();
 };

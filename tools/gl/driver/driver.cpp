@@ -24,6 +24,8 @@ std::span<const Driver> drivers() {
       Driver{"softpipe", "Mesa's reference renderer, slow", "softpipe", "softpipe", "", true},
       Driver{"lavapipe", "Mesa's Vulkan driver for the CPU, under OpenGL by zink",
              profile_of_llvmpipe(), "zink", "", false, true},
+      Driver{"emulated", "the emulated GPU, which runs our GLSL without another driver", "ieee", "",
+             "", false, false, true},
       Driver{"gpu", "the first hardware GPU that EGL lists", "", "", ""},
   };
   return known;

@@ -29,6 +29,8 @@ struct Driver {
   bool slow = false;
   /// The gallium driver draws by Vulkan, and Vulkan by lavapipe.
   bool on_lavapipe = false;
+  /// The emulated GPU itself, by any profile.
+  bool is_emulated = false;
 };
 
 inline bool is_software(const Driver& driver) { return !driver.gallium_driver.empty(); }
@@ -46,7 +48,7 @@ auto naming(const Driver& driver, const Work& work) {
   }
 }
 
-/// llvmpipe, llvmpipe-sse41, softpipe, lavapipe, gpu.
+/// llvmpipe, llvmpipe-sse41, softpipe, lavapipe, emulated, gpu.
 std::span<const Driver> drivers();
 
 /// The driver of that name, or nullptr.
