@@ -238,6 +238,55 @@ test("a picture and its depth are refocused with the program's bits, and scenes 
   await equals_program(page);
 });
 
+/** A map of numbers. */
+function write_pfm(name, width, height, value) {
+  const numbers = Float32Array.from({ length: width * height }, (_, i) => (
+      value(i % width, height - 1 - Math.floor(i / width))));
+  fs.writeFileSync(path.join(work, name), Buffer.concat(
+      [Buffer.from(`Pf\n${width} ${height}\n-1.0\n`), Buffer.from(numbers.buffer)]));
+}
+
+test("holes, the depth's fit and circles change a picture as the program's options do", async (page) => {
+  execFileSync(program, ["render", "figures", "--size", "240x160", "--show", "pinhole", "-o", "colour.png"],
+               { cwd: work, stdio: "ignore" });
+  const is_hole = (x, y) => x > 80 && x < 120 && y > 60 && y < 100;
+  write_pfm("holes_depth.pfm", 240, 160, (x, y) => (is_hole(x, y) ? NaN : x < 100 ? 0.7 : 2));
+  write_pfm("wide_depth.pfm", 320, 160, (x) => 0.5 + 0.01 * x);
+  write_pfm("circles_depth.pfm", 240, 160, (x) => x / 40 - 3);
+  const open = (depth) => page.locator("#files").setInputFiles(
+      ["colour.png", depth].map((name) => path.join(work, name)));
+  const command_has = (words) => page.waitForFunction((wanted) => (
+      document.getElementById("command").textContent.includes(wanted)), words, { timeout: kFrameMs });
+  const choose = async (select, value, words) => {
+    await page.locator(`#${select}`).selectOption(value);
+    await command_has(words);
+    await equals_program(page);
+    return drawn(page);
+  };
+  await open("holes_depth.pfm");
+  await command_has("holes_depth.pfm");
+  await set_number(page, "coc-scale-part", 6);
+  await equals_program(page);
+  const seen = new Set();
+  for (const side of ["near", "far", "infinity"]) {
+    seen.add(await choose("reading-holes", side, `--holes ${side}`));
+  }
+  assert.strictEqual(seen.size, 3);
+  await page.locator("#reading-holes").selectOption("refuse");
+  assert.match(await error_line(page), /--holes refuse: /);
+  assert.strictEqual(await page.locator("#reading-holes").inputValue(), "infinity");
+
+  await open("wide_depth.pfm");
+  assert.match(await error_line(page), /another shape/);
+  const stretched = await choose("reading-depth-fit", "stretch", "--depth-fit stretch");
+  assert.notStrictEqual(await choose("reading-depth-fit", "crop", "--depth-fit crop"), stretched);
+
+  await open("circles_depth.pfm");
+  await page.waitForFunction(() => /-3/.test(document.getElementById("depth-seen").textContent));
+  await choose("encoding", "circles", "--circles circles_depth.pfm");
+  assert.ok(await page.locator("#focus-part").evaluate((part) => Boolean(part.closest("[inert]"))));
+});
+
 test("the truth comes nearer, and the methods get their errors", async (page) => {
   await page.locator("#tab-methods").click();
   await page.locator("#truth-on").check();

@@ -145,12 +145,18 @@ test("a picture's request and its command have the numbers that its encoding tak
   const { picture_request } = await module_of("panels/picture.js");
   const { refocus_command } = await module_of("panels/hashes.js");
   const { first_side, first_state, with_picture } = await module_of("state.js");
-  const encodings = [{ name: "metres", needs: "", takes: "scale offset" },
-                     { name: "device", needs: "near far", takes: "" }];
-  const picture = { depth: "/own/my d.png", encoding: "device", numbers: { near_m: 1, far_m: 9, scale: 2 } };
-  assert.deepStrictEqual(picture_request("/own/a.png", picture, encodings, null), {
-    do: "open", picture: "/own/a.png", depth: "/own/my d.png", encoding: "device", near_m: 1, far_m: 9 });
-  const believed = picture_request("/own/a.png", { ...picture, encoding: null }, encodings, "metres");
+  const listing = {
+    encodings: [{ name: "metres", needs: "", takes: "scale offset" },
+                { name: "device", needs: "near far", takes: "" },
+                { name: "circles", needs: "", takes: "" }],
+    readings: [{ name: "holes", key: "holes" }, { name: "depth-fit", key: "depth_fit" }],
+  };
+  const picture = { depth: "/own/my d.png", encoding: "device", numbers: { near_m: 1, far_m: 9, scale: 2 },
+                    choices: { depth_fit: "crop" } };
+  assert.deepStrictEqual(picture_request("/own/a.png", picture, listing, null), {
+    do: "open", picture: "/own/a.png", depth: "/own/my d.png", encoding: "device", near_m: 1, far_m: 9,
+    depth_fit: "crop" });
+  const believed = picture_request("/own/a.png", { ...picture, encoding: null }, listing, "metres");
   assert.deepStrictEqual([believed.encoding, believed.scale, believed.near_m], [null, 2, undefined]);
 
   const side = { ...first_side(), method: "accumulation", focus: { at: [0.5, 1] } };
@@ -158,10 +164,14 @@ test("a picture's request and its command have the numbers that its encoding tak
                              { width: 300, height: 200 }, [{ name: "two-pass", kind: "filter" }]);
   assert.deepStrictEqual([state.show, state.sides[0].method], ["image", "two-pass"]);
   assert.strictEqual(
-      refocus_command(state, state.sides[0], encodings),
+      refocus_command(state, state.sides[0], listing),
       "softfocus refocus a.png 'my d.png' -o picture.png --json --depth-encoding device --near 1 --far 9 " +
-      "--method two-pass --focus-at 150,199 --focal-length 50 --f-number 2 --shift 0 --coc-scale 1");
-  assert.strictEqual(refocus_command(state, { ...side, dof: false }, encodings), null);
+      "--depth-fit crop --method two-pass --focus-at 150,199 --focal-length 50 --f-number 2 --shift 0 --coc-scale 1");
+  assert.strictEqual(refocus_command(state, { ...side, dof: false }, listing), null);
+  const of_circles = { ...state, picture: { ...state.picture, encoding: "circles" } };
+  assert.strictEqual(
+      refocus_command(of_circles, state.sides[0], listing),
+      "softfocus refocus a.png --circles 'my d.png' -o picture.png --json --depth-fit crop --method two-pass");
 });
 
 test("radii are read from a line of text", async () => {

@@ -34,7 +34,7 @@ const known_max_coc = [16, 16];
 let opened = null;   // the reply of the last open
 let last_reply = null;
 let build = "";
-let listing = { scenes: [], cases: [], methods: [], encodings: [] };
+let listing = { scenes: [], cases: [], methods: [], encodings: [], readings: [] };
 let playing = false;
 let quit = false;
 let read_own = async () => [];  // reads the visitor's files once more
@@ -176,7 +176,7 @@ function on_frame(reply, coarse, state, wall_ms) {
                          `${coarse ? ", coarse" : ""}`;
   document.title = `${fps} fps · ${ms_text(mean_ms)} ms · softfocus`;
   if (reply.focus_m && !coarse) keep_known(reply, state.editing);
-  show_hash(reply, state, state.sides[state.editing], listing.encodings, parameters);
+  show_hash(reply, state, state.sides[state.editing], listing);
   if (playing) {
     setTimeout(() => { if (playing) step(); }, Math.max(0, kFrameMs - wall_ms));
   } else if (!coarse && reply.hash === null) {
@@ -195,7 +195,7 @@ function show_scene_choice({ scene, failure }) {
 
 function open_request(what) {
   if (what.picture) {
-    return picture_request(what.scene, what.picture, listing.encodings, opened?.picture?.believed);
+    return picture_request(what.scene, what.picture, listing, opened?.picture?.believed);
   }
   return what.failure ? { do: "open", case: what.failure.name, value: what.failure.value }
                       : { do: "open", scene: what.scene };
@@ -371,11 +371,12 @@ async function point_at(place) {
   const { reply } = await engine.ask({ do: "pixel", x, y }, kAsked);
   asking_pixel = false;
   if (reply.error) return;
-  const depth = reply.depth_m === null ? "∞" : metres_text(reply.depth_m);
+  const metres = reply.depth_m === null ? "∞" : metres_text(reply.depth_m);
+  const depth = reply.has_depth ? ` · depth ${metres}` : "";
   const circle = reply.coc_radius_px === null || reply.coc_radius_px === undefined
       ? "" : ` · circle ${three_digits(reply.coc_radius_px)} px`;
   by_id("pixel").textContent =
-      `${x}, ${y} · depth ${depth}${circle} · light ${reply.colour_linear.map(three_digits).join(" ")}`;
+      `${x}, ${y}${depth}${circle} · light ${reply.colour_linear.map(three_digits).join(" ")}`;
 }
 
 const pointer = start_pointer(by_id("picture"), {
@@ -466,7 +467,7 @@ start_own_files({
   open: (path, read) => open({ scene: `/own/${path}` }, { read }),
   open_picture: (found, read) => open_picture({
     scene: `/own/${found.picture}`,
-    picture: { depth: found.depth && `/own/${found.depth}`, encoding: null, numbers: {} },
+    picture: { depth: found.depth && `/own/${found.depth}`, encoding: null, numbers: {}, choices: {} },
   }, read),
 });
 
@@ -505,7 +506,7 @@ async function start(ready) {
   controls.set_methods(listing.methods);
   cases = make_cases({ cases: listing.cases, open: (name, value) => open_newest({ failure: { name, value } }) });
   picture = make_picture({
-    engine, encodings: listing.encodings,
+    engine, listing,
     change: (reading) => {
       const { scene, picture: now } = store.get();
       return open_picture({ scene, picture: { ...now, ...reading } });

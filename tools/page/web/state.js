@@ -42,7 +42,8 @@ export function first_state() {
     /** A name, a file under /own/, or null while a failure case is open. */
     scene: "figures",
     failure: null,  // {name, value}
-    /** Of a picture, whose file is `scene`: {depth, size, encoding, numbers}; see panels/picture.js. */
+    /** Of a picture, whose file is `scene`: {depth, size, encoding, numbers,
+     * choices}; see panels/picture.js. */
     picture: null,
     size: [512, 512],
     time: 0,
