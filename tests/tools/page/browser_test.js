@@ -298,6 +298,69 @@ test("the truth comes nearer, and the methods get their errors", async (page) =>
   assert.ok(await page.locator("#error").isHidden());
 });
 
+/** Waits for another shader than `before` to be the method, and for its picture. Its hash. */
+async function shader_drawn(page, before) {
+  await page.waitForFunction((old) => {
+    const { value } = document.getElementById("method");
+    return value.startsWith("shader-") && value !== old;
+  }, before, { timeout: kFrameMs });
+  return drawn(page);
+}
+
+const hash_by_pipeline = (file) => JSON.parse(execFileSync(program, [
+  "render", "figures", "--size", "512x512", "--method",
+  path.join(__dirname, "../../../scenes/pipelines", file), "--json", "-o", path.join(work, "own.npy"),
+], { encoding: "utf8", stdio: ["ignore", "pipe", "ignore"] })).picture_hash;
+
+if (fs.existsSync(path.join(folder, "softfocus-compiler.wasm"))) {
+  test("a shader of one's own is compiled, measured, told by its line, and in the link", async (page, { context, address }) => {
+    const two_pass = await drawn(page);
+    await page.locator("#tab-shader").click();
+    assert.strictEqual(await shader_drawn(page, ""), hash_by_pipeline("lesson/gather.toml"));
+    await page.waitForFunction(() => /views.*FLIP/.test(document.getElementById("shader-truth").textContent),
+                               null, { timeout: kFrameMs });
+    const gather = await page.locator("#method").inputValue();
+    const text = await page.locator("#shader-text").inputValue();
+    await page.locator("#shader-text").fill(text.replace("vec3 sum", "vec3 some"));
+    await page.waitForSelector("#shader-fault:not([hidden])");
+    assert.match(await text_of(page, "shader-fault"), /^mine\.frag:23: 'sum': undeclared identifier/);
+    await page.locator("#shader-run").click();
+    await page.waitForFunction(() => {
+      const box = document.getElementById("shader-text");
+      return box.value.slice(box.selectionStart, box.selectionEnd).trim().startsWith("sum += ");
+    });
+    assert.strictEqual(await page.locator("#method").inputValue(), gather);
+
+    await page.locator("#shader-example").selectOption("two_pass");
+    assert.strictEqual(await shader_drawn(page, gather), two_pass);
+    assert.ok(await page.locator("#shader-fault").isHidden());
+    await page.waitForFunction(() => location.hash.includes("shader="), null, { timeout: 5000 });
+    const other = await context.newPage();
+    await other.goto(address + await page.evaluate(() => location.hash));
+    assert.strictEqual(await shader_drawn(other, ""), two_pass);
+    assert.strictEqual(await other.locator("#shader-text").inputValue(),
+                       await page.locator("#shader-text").inputValue());
+    assert.ok(await other.locator("#shader-panel").isVisible());
+    await other.close();
+  });
+
+  test("a shader of one's own stands beside the GPU's picture of it", async (page) => {
+    await page.locator("#tab-shader").click();
+    await shader_drawn(page, "");
+    const gather = await page.locator("#method").inputValue();
+    await page.locator("#shader-example").selectOption("two_pass");
+    await shader_drawn(page, gather);
+    await page.locator("#shader-gpu").click();
+    await page.waitForFunction(() => /values/.test(document.getElementById("shader-differences").textContent),
+                               null, { timeout: kFrameMs });
+    assert.match(await text_of(page, "shader-differences"),
+                 /Your shader, of the GPU’s sharp picture: all 1048576 values are equal/);
+    for (const id of ["shader-emulated", "shader-on-gpu", "shader-where"]) {
+      await page.waitForSelector(`#${id}:not([hidden])`, { timeout: kFrameMs });
+    }
+  });
+}
+
 test("a failure case is a scene", async (page) => {
   const first = await drawn(page);
   await page.locator("#tab-cases").click();

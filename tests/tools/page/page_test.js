@@ -55,6 +55,33 @@ test("a link gives the state back", async () => {
   assert.deepStrictEqual(with_link(opened, words), state);
 });
 
+test("a link carries a shader that is shown, up to a length, and what is broken is none", async () => {
+  const { first_side, first_state } = await module_of("state.js");
+  const { kMostLinkBytes, link_of, read_link, shader_of, take_shader } = await module_of("link.js");
+  const method = "shader-0x0123456789abcdef.toml";
+  const shader = { text: "// über\nvoid main() {}\n", passes: "[[pass]]\n", method };
+  const state = { ...first_state(), shader, sides: [{ ...first_side(), method }] };
+  const words = read_link(link_of(state));
+  assert.deepStrictEqual(shader_of(words), { text: shader.text, passes: shader.passes });
+  take_shader(words, "shader-0x1.toml");
+  assert.strictEqual(words.get("method"), "shader-0x1.toml");
+  take_shader(words, null);
+  assert.strictEqual(words.get("method"), "two-pass");
+  assert.strictEqual(shader_of(read_link(link_of({ ...state, sides: [first_side()] }))), null);
+  const long = { ...shader, text: "x".repeat(kMostLinkBytes) };
+  assert.strictEqual(shader_of(read_link(link_of({ ...state, shader: long }))), null);
+  assert.strictEqual(shader_of(read_link("shader=*&passes=AA")), null);
+});
+
+test("a fault's place is a line of one of the two texts", async () => {
+  const { line_range, place_of } = await module_of("panels/shader.js");
+  assert.deepStrictEqual(place_of("mine.frag:12: 'x': undeclared"), { id: "shader-text", line: 12 });
+  assert.deepStrictEqual(place_of("mine.toml:3: shader"), { id: "shader-passes", line: 3 });
+  assert.strictEqual(place_of("this page was built without"), null);
+  assert.deepStrictEqual(line_range("ab\ncde\nf", 2), [3, 6]);
+  assert.deepStrictEqual(line_range("ab\ncde\nf", 9), [7, 8]);
+});
+
 test("a link carries a failure case", async () => {
   const { first_state } = await module_of("state.js");
   const { link_of, read_link, state_to_open } = await module_of("link.js");

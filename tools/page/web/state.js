@@ -45,6 +45,8 @@ export function first_state() {
     /** Of a picture, whose file is `scene`: {depth, size, encoding, numbers,
      * choices}; see panels/picture.js. */
     picture: null,
+    /** The visitor's shader that ran last: {text, passes, method}. */
+    shader: null,
     size: [512, 512],
     time: 0,
     camera: null,  // null: the scene's own, {position_m, target_m, fov_y_degrees}
