@@ -222,8 +222,8 @@ std::vector<Texture> draw_pass(const Pipeline& pipeline, std::size_t number, con
 }
 
 /// Of any format.
-void store_result(const Image& drawn, const Profile& profile, const ImageView& result,
-                  ThreadPool& pool) {
+void store_colours(const Image& drawn, const Profile& profile, const ImageView& result,
+                   ThreadPool& pool) {
   if (drawn.format == Format::rgba16f) return copy_rows(drawn, result, pool);
   for_each_row(pool, result.height, 8, [&](int y) {
     for (int x = 0; x < result.width; ++x) {
@@ -453,6 +453,13 @@ Image source_image(const Pipeline& pipeline, const DofInput& input, PipelineSour
   return depth;
 }
 
+void store_result(const Pipeline& pipeline, const DofInput& input, const Image& drawn,
+                  const ImageView& result, ThreadPool& pool) {
+  if (pipeline.by_codes) return store_codes(drawn, input.scene, result);
+  store_colours(drawn, input.profile, result, pool);
+  keep_depths(input.scene, result, pool);
+}
+
 void run_pipeline(const Pipeline& pipeline, const DofInput& input, const ImageView& result,
                   ThreadPool& pool, const OnPass& on_pass) {
   const std::vector<PassRun> runs = pass_runs(pipeline, input);
@@ -471,13 +478,10 @@ void run_pipeline(const Pipeline& pipeline, const DofInput& input, const ImageVi
       if (on_pass) on_pass(i, drawn.passes[i]);
     }
   }
-  if (pipeline.by_codes) {
-    store_codes(drawn.previous->levels[0], input.scene, result);
-  } else {
-    if (!is_drawn_in_place) {
-      store_result(drawn.previous->levels[0], input.profile, result, pool);
-    }
+  if (is_drawn_in_place) {
     keep_depths(input.scene, result, pool);
+  } else {
+    store_result(pipeline, input, drawn.previous->levels[0], result, pool);
   }
   drawn.give_back();
 }

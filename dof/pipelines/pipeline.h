@@ -153,6 +153,10 @@ std::vector<PassRun> pass_runs(const Pipeline& pipeline, const DofInput& input);
 /// What passes read as `picture`, `depth` or `buffer_depth`.
 Image source_image(const Pipeline& pipeline, const DofInput& input, PipelineSource source);
 
+/// What the last pass drew, of its first target, as run_pipeline()'s result of the same size.
+void store_result(const Pipeline& pipeline, const DofInput& input, const Image& drawn,
+                  const ImageView& result, ThreadPool& pool);
+
 /// Told what a pass made, after each of its turns.
 using OnPass = std::function<void(std::size_t pass, std::span<const Texture> made)>;
 

@@ -127,17 +127,23 @@ void add_text_to_hash(Hash& hash, std::string_view text) {
   for (const char c : text) add_to_hash(hash, static_cast<std::uint8_t>(c));
 }
 
-OpenedShader open_pass_shader(const Section& section, const std::string& name,
-                              GlslConvention convention, const Reading& reading) {
-  const std::filesystem::path file = reading.folder / name;
+/// A file of the folder, or one of ours.
+OpenedShader open_in_folder(const std::filesystem::path& folder, const std::string& name,
+                            GlslConvention convention) {
+  const std::filesystem::path file = folder / name;
   std::error_code error;
   if (!std::filesystem::exists(file, error)) {
     if (const std::string_view ours = shader_text(name); !ours.empty()) {
       return open_shader_text(name, "#version 400\n#line 1\n" + std::string{ours}, convention);
     }
   }
+  return open_shader(file, convention);
+}
+
+OpenedShader open_pass_shader(const Section& section, const std::string& name,
+                              GlslConvention convention, const ShaderOpener& open) {
   try {
-    return open_shader(file, convention);
+    return open(name, convention);
   } catch (const SceneError& fault) {
     fail_at(section, "shader", fault.what());
   }
@@ -320,12 +326,21 @@ void add_constants(PipelinePass& pass, const std::vector<GlslParameter>& paramet
 }
 
 OpenedPipeline read_pipeline(const std::filesystem::path& file) {
+  const auto open = [&](const std::string& name, GlslConvention convention) {
+    return open_in_folder(file.parent_path(), name, convention);
+  };
   const std::string name = file.string();
-  const std::string text = read_file_text(file, kMostPipelineBytes);
+  OpenedPipeline opened = read_pipeline(read_file_text(file, kMostPipelineBytes), name, open);
+  opened.files.insert(opened.files.begin(), name);
+  return opened;
+}
+
+OpenedPipeline read_pipeline(const std::string& text, const std::string& name,
+                             const ShaderOpener& open) {
   const toml::table table = parse_toml(text, name, "docs/shaders.md");
+  const std::filesystem::path file{name};
   Reading reading{.folder = file.parent_path()};
   add_text_to_hash(reading.hash, text);
-  reading.opened.files.push_back(name);
   Section top{&table, name, "", {}};
   Pipeline& pipeline = reading.pipeline();
   pipeline.name = name;
@@ -345,7 +360,7 @@ OpenedPipeline read_pipeline(const std::filesystem::path& file) {
     const GlslConvention convention =
         read_choice(section, "convention", GlslConvention::recognised, kGlslConventions);
     shaders.push_back(
-        open_pass_shader(section, read_text(section, "shader", ""), convention, reading));
+        open_pass_shader(section, read_text(section, "shader", ""), convention, open));
     OpenedShader& shader = shaders.back();
     for (const std::uint32_t word : shader.words) add_to_hash(reading.hash, word);
     std::move(shader.files.begin(), shader.files.end(), std::back_inserter(reading.opened.files));
@@ -427,6 +442,32 @@ const KeptMethod* kept_method(const Method& method) {
 
 bool is_pipeline_name(std::string_view name) { return end_of_file(name) != name.npos; }
 
+namespace {
+
+/// With kept_mutex() locked.
+const Method* kept_as(const std::string& name, OpenedPipeline opened) {
+  KeptMethod& made = kept_methods()[name];
+  made.opened = std::move(opened);
+  made.name = name;
+  made.method = {.name = made.name,
+                 .summary = made.opened.pipeline.summary,
+                 .needs = "colour and depth",
+                 .filter = nullptr,
+                 .pipeline = &made.opened.pipeline};
+  return &made.method;
+}
+
+}  // namespace
+
+const Method* keep_pipeline(OpenedPipeline opened) {
+  const std::lock_guard lock(kept_mutex());
+  const std::string name = opened.pipeline.name;
+  if (const auto at = kept_methods().find(name); at != kept_methods().end()) {
+    return &at->second.method;
+  }
+  return kept_as(name, std::move(opened));
+}
+
 const Method* pipeline_method(const std::string& name) {
   const std::lock_guard lock(kept_mutex());
   auto& kept = kept_methods();
@@ -439,15 +480,7 @@ const Method* pipeline_method(const std::string& name) {
     add_to_hash(hash, std::bit_cast<std::uint64_t>(of.value));
   }
   opened.pipeline.hash = hash.value;
-  KeptMethod& made = kept[name];
-  made.opened = std::move(opened);
-  made.name = name;
-  made.method = {.name = made.name,
-                 .summary = made.opened.pipeline.summary,
-                 .needs = "colour and depth",
-                 .filter = nullptr,
-                 .pipeline = &made.opened.pipeline};
-  return &made.method;
+  return kept_as(name, std::move(opened));
 }
 
 std::vector<std::string> files_of(const Method& method) {

@@ -2,12 +2,13 @@
 // Pipelines from TOML (docs/shaders.md has the keys), and methods made of them.
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "dof/pipelines/pipeline.h"
-#include "raster/shaders/glsl/glsl.h"
+#include "scenes/load/shader_file.h"
 
 namespace softfocus {
 
@@ -21,6 +22,14 @@ struct OpenedPipeline {
 /// Throws SceneError and ShaderError: "FILE:LINE: ...".
 OpenedPipeline read_pipeline(const std::filesystem::path& file);
 
+/// Opens a pass's shader by its name in the pipeline. Throws SceneError and ShaderError.
+using ShaderOpener = std::function<OpenedShader(const std::string& name, GlslConvention)>;
+
+/// A pipeline's text that is in no file; `name` is for errors. Its textures' files are relative to
+/// where the program runs.
+OpenedPipeline read_pipeline(const std::string& text, const std::string& name,
+                             const ShaderOpener& open);
+
 /// Values that a shader's text offers become those of its uniforms, unless others come later.
 void add_constants(PipelinePass& pass, const std::vector<GlslParameter>& parameters);
 
@@ -33,6 +42,10 @@ bool is_pipeline_name(std::string_view name);
 /// The method of a pipeline. Files are read once, when a name is first asked for: what is returned
 /// lasts as long as the program. Throws as read_pipeline().
 const Method* pipeline_method(const std::string& name);
+
+/// The same for a pipeline that is in no file: its name is the method's, and ends with ".toml". One
+/// that is there already stays.
+const Method* keep_pipeline(OpenedPipeline opened);
 
 /// What was read for the method, for whoever writes files, and what the reader warned of. Empty for
 /// other methods.

@@ -4,7 +4,7 @@
 
 #include "scenes/load/load_scene.h"
 #include "tools/page/requests.h"
-#include "tools/refocus/depth/depth_encodings.h"
+#include "tools/refocus/options.h"
 #include "tools/refocus/photo_lens.h"
 
 namespace softfocus {
@@ -91,6 +91,24 @@ Json encodings_json() {
                     {"needs", encoding.needs},
                     {"takes", encoding.takes}});
   }
+  list.push_back(
+      {{"name", circles_encoding().name}, {"summary", kCirclesText}, {"needs", ""}, {"takes", ""}});
+  return list;
+}
+
+template <class Choices>
+Json choice_json(const char* name, const char* key, const char* text, const Choices& choices,
+                 const Json& preset) {
+  Json values = Json::array();
+  for (const auto& choice : choices) values.push_back(choice.name);
+  return {{"name", name}, {"key", key}, {"text", text}, {"values", values}, {"preset", preset}};
+}
+
+/// How a depth is read, beside its encoding: options of `refocus`.
+Json readings_json() {
+  Json list = Json::array();
+  list.push_back(choice_json("holes", "holes", kHolesText, kHoles, kHoles.front().name));
+  list.push_back(choice_json("depth-fit", "depth_fit", kDepthFitText, kDepthFits, nullptr));
   return list;
 }
 
@@ -129,7 +147,8 @@ Json answer_scenes(Page& /*page*/, const Json& /*request*/) {
   return {{"scenes", scenes},
           {"cases", cases_json()},
           {"methods", methods_json()},
-          {"encodings", encodings_json()}};
+          {"encodings", encodings_json()},
+          {"readings", readings_json()}};
 }
 
 }  // namespace softfocus

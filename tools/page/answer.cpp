@@ -24,6 +24,8 @@ constexpr std::array kRequests{
     Request{"selftest", answer_selftest},
     Request{"file", answer_file},
     Request{"save", answer_save},
+    Request{"shader", answer_shader},
+    Request{"shader_text", answer_shader_text},
     Request{"gl_open", answer_gl_open},
     Request{"gl_frame", answer_gl_frame},
     Request{"gl_probe", answer_gl_probe},

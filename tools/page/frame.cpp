@@ -85,7 +85,9 @@ Json answer_pixel(Page& page, const Json& request) {
   const auto y = static_cast<int>(checked_number(request.at("y"), "y", 0, picture.height - 1));
   const float depth_m = load_texel<Format::rgba16f>(picture, x, y).w;
   const glm::vec4 colour = load_texel<Format::rgba16f>(shown.picture, x, y);
+  const bool has_depth = !page.opened->picture || !page.opened->picture->options.circles;
   Json reply{{"depth_m", number_or_null(static_cast<double>(depth_m))},
+             {"has_depth", has_depth},
              {"coc_radius_px", nullptr},
              {"coc_on_film_mm", nullptr},
              {"colour_linear", std::array{colour.x, colour.y, colour.z}}};

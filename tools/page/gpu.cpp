@@ -9,6 +9,7 @@
 #include "tools/crosscheck/cases.h"
 #include "tools/crosscheck/probe.h"
 #include "tools/gl/filter_on_gl.h"
+#include "tools/gl/pipeline_on_gl.h"
 #include "tools/gl/scene_on_gl.h"
 #include "tools/page/drawing.h"
 #include "tools/page/requests.h"
@@ -20,7 +21,7 @@ struct Gpu {
   GlContext context;
   Shaders shaders;
   ChosenProfile profile;  ///< what our side is drawn with
-  Image frame;            ///< of the last gl_frame, the GPU's
+  Image frame, emulated;  ///< of the last gl_frame
 };
 
 struct GpuScene {
@@ -48,7 +49,7 @@ Gpu& opened_gpu(Page& page) {
     page.gpu.reset();
   }
   if (!page.gpu) {
-    page.gpu.reset(new Gpu{GlContext{drivers().front()}, {}, {}, {}});
+    page.gpu.reset(new Gpu{GlContext{drivers().front()}, {}, {}, {}, {}});
     page.gpu->profile = profile_of(page.gpu->context.renderer());
   }
   return *page.gpu;
@@ -143,17 +144,38 @@ Stage filtered_by_both(const Page& page, const Method& method, const DofSettings
   return stage;
 }
 
+/// The same for a user's passes, with the GLSL of their text.
+Stage piped_by_both(const Page& page, const Method& method, const DofSettings& settings,
+                    const Image& picture) {
+  const Gpu& gpu = *page.gpu;
+  const Pipeline& pipeline = *method.pipeline;
+  const DofInput input{picture, settings, gpu.profile.profile};
+  const GlTexture sharp = upload(source_image(pipeline, input, PipelineSource::picture));
+  PipelineOnGl on_gl{gpu.context, pipeline, input};
+  const auto run = [&] {
+    on_gl.run(sharp);
+    wait_for(on_gl.result());
+  };
+  run();
+  Stage stage;
+  stage.gl_ms = milliseconds_of(run);
+  stage.on_gl = make_image(Format::rgba16f, picture.width, picture.height);
+  store_result(pipeline, input, read_colour(on_gl.result(), 0), stage.on_gl, *page.pool);
+  stage.emulated_ms = milliseconds_of([&] { stage.emulated = apply(method, input, *page.pool); });
+  return stage;
+}
+
 void add(Json& reply, const std::string& stage_name, const Stage& stage) {
   reply[stage_name + "_ms"] = stage.gl_ms;
   reply["emulated_" + stage_name + "_ms"] = stage.emulated_ms;
   reply["differing"][stage_name] = json_of(stage);
 }
 
-Json shown_again(Page& page) {
+Json shown_again(Page& page, bool emulated) {
   if (!page.gpu || page.gpu->frame.width == 0) {
     throw UsageError("there is no frame of the GPU's yet; gl_show 'difference' makes one");
   }
-  const Image& frame = page.gpu->frame;
+  const Image& frame = emulated ? page.gpu->emulated : page.gpu->frame;
   show_on_screen(frame, page.pixels, *page.pool);
   return {{"width", frame.width}, {"height", frame.height}};
 }
@@ -170,9 +192,9 @@ Json answer_gl_open(Page& page, const Json& /*request*/) {
 
 Json answer_gl_frame(Page& page, const Json& request) {
   const std::string& show = request.at("gl_show").text();
-  if (show == "picture") return shown_again(page);
+  if (show == "picture" || show == "emulated") return shown_again(page, show == "emulated");
   if (show != "difference") {
-    throw UsageError("gl_show '" + show + "': there are difference, picture");
+    throw UsageError("gl_show '" + show + "': there are difference, picture, emulated");
   }
   const FrameSettings settings = read_frame_settings(request);
   Gpu& gpu = opened_gpu(page);
@@ -193,11 +215,13 @@ Json answer_gl_frame(Page& page, const Json& request) {
     add(reply, "draw", frame);
   }
   const Method* method = settings.show == Show::image ? settings.method.filter : nullptr;
-  if (method != nullptr && has_shader(method->name)) {
+  const bool has_passes = method != nullptr && method->pipeline != nullptr;
+  if (method != nullptr && (has_passes || has_shader(method->name))) {
     const DofSettings lens =
         used_lens(page, *drawn, settings, shot_of_drawn(page, *drawn, settings)).settings;
-    Stage filter = filtered_by_both(page, *method, lens, drawn->trial ? uploaded : target.colour[0],
-                                    frame.on_gl);
+    const GlTexture& sharp = drawn->trial ? uploaded : target.colour[0];
+    Stage filter = has_passes ? piped_by_both(page, *method, lens, frame.on_gl)
+                              : filtered_by_both(page, *method, lens, sharp, frame.on_gl);
     add(reply, "filter", filter);
     frame.emulated = apply(*method, {frame.emulated, lens, gpu.profile.profile}, *page.pool);
     frame.on_gl = std::move(filter.on_gl);
@@ -206,6 +230,7 @@ Json answer_gl_frame(Page& page, const Json& request) {
   check_not_lost(gpu);
   show_on_screen(difference_picture(frame.on_gl, frame.emulated), page.pixels, *page.pool);
   gpu.frame = std::move(frame.on_gl);
+  gpu.emulated = std::move(frame.emulated);
   return reply;
 }
 

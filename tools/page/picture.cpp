@@ -11,14 +11,30 @@
 namespace softfocus {
 namespace {
 
+template <class Choices, class Value>
+void read_choice(const Json& request, std::string_view key, const Choices& choices, Value& place) {
+  const Json* name = given(request, key);
+  if (name == nullptr) return;
+  const auto found = std::find_if(choices.begin(), choices.end(),
+                                  [&](const auto& choice) { return choice.name == name->text(); });
+  if (found == choices.end()) {
+    throw UsageError(std::string{key} + " '" + name->text() + "': there are " + names_of(choices));
+  }
+  place = found->value;
+}
+
 DepthOptions read_reading(const Json& request) {
   DepthOptions reading;
   if (const Json* name = given(request, "encoding")) {
-    reading.encoding = find_depth_encoding(name->text());
+    const DepthEncoding& circles = circles_encoding();
+    reading.encoding = name->text() == circles.name ? &circles : find_depth_encoding(name->text());
     if (reading.encoding == nullptr) {
-      throw UsageError("encoding '" + name->text() + "': there are " + names_of(depth_encodings()));
+      throw UsageError("encoding '" + name->text() + "': there are " + names_of(depth_encodings()) +
+                       ", " + std::string{circles.name});
     }
   }
+  read_choice(request, "holes", kHoles, reading.holes);
+  read_choice(request, "depth_fit", kDepthFits, reading.fit);
   for (const OfDepth& of : kDepthNumbers) {
     if (const Json* value = given(request, key_of(of.number))) {
       reading.numbers.*of.place = checked_number(*value, of.number);
@@ -116,6 +132,21 @@ Json reading_json(const OpenedPicture& opened, const BelievedEncoding& believed,
   return json;
 }
 
+/// A depth of another shape is there all the same, stretched; `lacks` says that it must be asked
+/// for.
+PictureSources found_sources(const RefocusOptions& options, std::string& lacks) {
+  try {
+    return open_sources(options.colour, options.depth, options.reading);
+  } catch (const UsageError& error) {
+    if (options.reading.fit) throw;
+    DepthOptions stretched = options.reading;
+    stretched.fit = DepthFit::stretch;
+    PictureSources sources = open_sources(options.colour, options.depth, stretched);
+    lacks = error.what();
+    return sources;
+  }
+}
+
 /// As `refocus` begins with.
 NotedLens first_lens(const PictureSources& sources) {
   if (sources.notes && sources.notes->lens) return *sources.notes->lens;
@@ -155,8 +186,12 @@ OpenedWithReply open_picture(const Json& request, ThreadPool& pool) {
   options.colour = request.at("picture").text();
   if (const Json* depth = given(request, "depth")) options.depth = depth->text();
   options.reading = read_reading(request);
+  if (options.reading.encoding == &circles_encoding()) {
+    options.circles = options.depth.empty() ? options.colour : options.depth;
+    read_circles(options);
+  }
   PictureSources& sources = picture->sources;
-  sources = open_sources(options.colour, options.depth, options.reading);
+  sources = found_sources(options, picture->lacks);
   options.photo = with_sources(options.photo, sources);
   const PictureFile& depth_file = sources.of_depth();
   PictureOnItsWay source{read_colour(sources.colour_file, sources.colour, false).image};
@@ -167,11 +202,14 @@ OpenedWithReply open_picture(const Json& request, ThreadPool& pool) {
   const BelievedEncoding believed = believed_encoding(sources, seen);
   const DepthEncoding* chosen = options.reading.encoding;
   const BelievedEncoding used = chosen != nullptr ? BelievedEncoding{chosen, ""} : believed;
-  picture->lacks = lacking(used, depth_numbers(sources, options.reading, used.encoding));
+  if (picture->lacks.empty()) {
+    picture->lacks = lacking(used, depth_numbers(sources, options.reading, used.encoding));
+  }
   PictureAtSize& whole = picture->whole;
   if (picture->lacks.empty()) {
     picture->reading = read_depth(sources, source.picture, options.reading, options.photo, pool);
     whole.depth = std::move(picture->reading->map);
+    if (options.circles) options.photo.circles = coc_of_circles(picture->reading->numbers);
     put_in_alpha(whole.depth.metres, source.picture);
   }
   whole.opacity = std::move(source.opacity);

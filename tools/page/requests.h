@@ -16,6 +16,8 @@ Json answer_compare_methods(Page& page, const Json& request);
 Json answer_selftest(Page& page, const Json& request);
 Json answer_file(Page& page, const Json& request);
 Json answer_save(Page& page, const Json& request);
+Json answer_shader(Page& page, const Json& request);
+Json answer_shader_text(Page& page, const Json& request);
 Json answer_gl_open(Page& page, const Json& request);
 Json answer_gl_frame(Page& page, const Json& request);
 Json answer_gl_probe(Page& page, const Json& request);

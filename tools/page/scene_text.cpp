@@ -142,6 +142,8 @@ std::string scene_text(const Opened& opened, const ShownFrame& shown) {
 
 Json command_text(const Opened& opened, const FrameSettings& settings) {
   if (opened.picture || opened.stress_case) return nullptr;
+  const Method* filter = settings.method.filter;
+  if (filter != nullptr && filter->pipeline != nullptr) return nullptr;
   const bool is_random = is_random_scene(opened.source);
   if (settings.camera && is_random) return nullptr;
   const bool needs_file = settings.camera || opened.source.find('/') != opened.source.npos;

@@ -179,10 +179,7 @@ void add_refocus_options(CLI::App& parser, RefocusOptions& options) {
            [&options] { options.keep_layers = false; });
   add_flag(parser, "--json", "Print what was done as JSON on standard output", options.json);
   add_depth_options(parser, options.reading);
-  add_text(parser, "--circles", "FILE",
-           "Radii of circles in pixels in place of depth and lens, negative before the focus: of "
-           "any camera, by any program",
-           options.circles);
+  add_text(parser, "--circles", "FILE", kCirclesText, options.circles);
   add_photo_lens_options(parser, options.photo);
   begin_group(parser, "Bokeh");
   add_blades_option(parser, "An aperture", options.aperture.blades);
@@ -209,6 +206,12 @@ void add_refocus_options(CLI::App& parser, RefocusOptions& options) {
   add_talk_options(parser, options.verbose, options.quiet);
 }
 
+void read_circles(RefocusOptions& options) {
+  options.depth = *options.circles;
+  options.reading.encoding = &circles_encoding();
+  if (options.reading.holes == Holes::background) options.reading.holes = Holes::far_side;
+}
+
 void take_circles(RefocusOptions& options, const CLI::App& parser) {
   if (!options.circles) return;
   if (!options.depth.empty()) {
@@ -221,9 +224,7 @@ void take_circles(RefocusOptions& options, const CLI::App& parser) {
         "--f-number", "--focal-length", "--sensor", "--fov", "--coc-scale", "--blur-at-infinity"}) {
     check_one_of(parser, {"--circles", option});
   }
-  options.depth = *options.circles;
-  options.reading.encoding = &circles_encoding();
-  if (options.reading.holes == Holes::background) options.reading.holes = Holes::far_side;
+  read_circles(options);
 }
 
 void complete(RefocusOptions& options, const CLI::App& parser) {

@@ -91,7 +91,14 @@ struct RefocusOptions {
 
 void add_refocus_options(CLI::App& parser, RefocusOptions& options);
 
-/// Puts --circles in the depth's place. Throws UsageError for options that it excludes.
+inline constexpr const char* kCirclesText =
+    "Radii of circles in pixels in place of depth and lens, negative before the focus: of any "
+    "camera, by any program";
+
+/// Puts `options.circles` in the depth's place.
+void read_circles(RefocusOptions& options);
+
+/// The same for --circles. Throws UsageError for options that it excludes.
 void take_circles(RefocusOptions& options, const CLI::App& parser);
 
 /// Checks options against each other: throws UsageError for options that are missing or exclude

@@ -16,13 +16,7 @@ namespace {
 constexpr std::array kUpsamplings{Choice<bool>{"colour", true}, Choice<bool>{"nearest", false}};
 constexpr std::array kAlongs{Choice<DepthAlong>{"axis", DepthAlong::axis},
                              Choice<DepthAlong>{"ray", DepthAlong::ray}};
-constexpr std::array kHoles{
-    Choice<Holes>{"background", Holes::background}, Choice<Holes>{"near", Holes::near_side},
-    Choice<Holes>{"far", Holes::far_side}, Choice<Holes>{"infinity", Holes::infinity},
-    Choice<Holes>{"refuse", Holes::refused}};
 constexpr std::array kIccs{Choice<bool>{"keep", false}, Choice<bool>{"srgb", true}};
-constexpr std::array kFits{Choice<DepthFit>{"stretch", DepthFit::stretch},
-                           Choice<DepthFit>{"crop", DepthFit::crop}};
 
 void add_mending_options(CLI::App& parser, Mending& mending) {
   add_choice(parser, "--upsample",
@@ -146,15 +140,8 @@ void add_depth_options(CLI::App& parser, DepthOptions& options) {
                        });
   add_text(parser, "--mask", "FILE", "A picture of the depth's size, 0 where nothing is known",
            options.mask);
-  add_choice(parser, "--holes",
-             "What is not known is background, infinitely far, if it touches the border or is "
-             "larger than things, and else filled from the far side; or all is filled from the "
-             "near or far side, or infinitely far, or refused (default: background)",
-             kHoles, options.holes);
-  add_choice(parser, "--depth-fit",
-             "A depth of another shape than the picture is stretched, or its middle is taken "
-             "(default: stretched by up to 2 %, else refused)",
-             kFits, options.fit);
+  add_choice(parser, "--holes", kHolesText, kHoles, options.holes);
+  add_choice(parser, "--depth-fit", kDepthFitText, kDepthFits, options.fit);
   add_file_options(parser, options.files);
   add_mending_options(parser, options.mending);
 }

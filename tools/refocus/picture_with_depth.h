@@ -1,10 +1,12 @@
 #pragma once
 // A colour and its depth from one file or two, as `refocus` and `inspect` read them.
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "raster/numbers/parameter.h"
 #include "tools/cli/parser.h"
 #include "tools/pictures/picture_notes.h"
 #include "tools/refocus/chosen_layers.h"
@@ -19,6 +21,21 @@ namespace softfocus {
 /// How a depth of another shape than the picture lies on it: stretched in one direction, or its
 /// middle, of the picture's shape.
 enum class DepthFit : std::uint8_t { stretch, crop };
+
+// The choices of --holes and --depth-fit, which the simulator's page has too.
+inline constexpr std::array kHoles{
+    Choice<Holes>{"background", Holes::background}, Choice<Holes>{"near", Holes::near_side},
+    Choice<Holes>{"far", Holes::far_side}, Choice<Holes>{"infinity", Holes::infinity},
+    Choice<Holes>{"refuse", Holes::refused}};
+inline constexpr const char* kHolesText =
+    "What is not known is background, infinitely far, if it touches the border or is larger than "
+    "things, and else filled from the far side; or all is filled from the near or far side, or "
+    "infinitely far, or refused (default: background)";
+inline constexpr std::array kDepthFits{Choice<DepthFit>{"stretch", DepthFit::stretch},
+                                       Choice<DepthFit>{"crop", DepthFit::crop}};
+inline constexpr const char* kDepthFitText =
+    "A depth of another shape than the picture is stretched, or its middle is taken (default: "
+    "stretched by up to 2 %, else refused)";
 
 /// How files are taken, whatever is in them.
 struct FileReading {

@@ -238,6 +238,55 @@ test("a picture and its depth are refocused with the program's bits, and scenes 
   await equals_program(page);
 });
 
+/** A map of numbers. */
+function write_pfm(name, width, height, value) {
+  const numbers = Float32Array.from({ length: width * height }, (_, i) => (
+      value(i % width, height - 1 - Math.floor(i / width))));
+  fs.writeFileSync(path.join(work, name), Buffer.concat(
+      [Buffer.from(`Pf\n${width} ${height}\n-1.0\n`), Buffer.from(numbers.buffer)]));
+}
+
+test("holes, the depth's fit and circles change a picture as the program's options do", async (page) => {
+  execFileSync(program, ["render", "figures", "--size", "240x160", "--show", "pinhole", "-o", "colour.png"],
+               { cwd: work, stdio: "ignore" });
+  const is_hole = (x, y) => x > 80 && x < 120 && y > 60 && y < 100;
+  write_pfm("holes_depth.pfm", 240, 160, (x, y) => (is_hole(x, y) ? NaN : x < 100 ? 0.7 : 2));
+  write_pfm("wide_depth.pfm", 320, 160, (x) => 0.5 + 0.01 * x);
+  write_pfm("circles_depth.pfm", 240, 160, (x) => x / 40 - 3);
+  const open = (depth) => page.locator("#files").setInputFiles(
+      ["colour.png", depth].map((name) => path.join(work, name)));
+  const command_has = (words) => page.waitForFunction((wanted) => (
+      document.getElementById("command").textContent.includes(wanted)), words, { timeout: kFrameMs });
+  const choose = async (select, value, words) => {
+    await page.locator(`#${select}`).selectOption(value);
+    await command_has(words);
+    await equals_program(page);
+    return drawn(page);
+  };
+  await open("holes_depth.pfm");
+  await command_has("holes_depth.pfm");
+  await set_number(page, "coc-scale-part", 6);
+  await equals_program(page);
+  const seen = new Set();
+  for (const side of ["near", "far", "infinity"]) {
+    seen.add(await choose("reading-holes", side, `--holes ${side}`));
+  }
+  assert.strictEqual(seen.size, 3);
+  await page.locator("#reading-holes").selectOption("refuse");
+  assert.match(await error_line(page), /--holes refuse: /);
+  assert.strictEqual(await page.locator("#reading-holes").inputValue(), "infinity");
+
+  await open("wide_depth.pfm");
+  assert.match(await error_line(page), /another shape/);
+  const stretched = await choose("reading-depth-fit", "stretch", "--depth-fit stretch");
+  assert.notStrictEqual(await choose("reading-depth-fit", "crop", "--depth-fit crop"), stretched);
+
+  await open("circles_depth.pfm");
+  await page.waitForFunction(() => /-3/.test(document.getElementById("depth-seen").textContent));
+  await choose("encoding", "circles", "--circles circles_depth.pfm");
+  assert.ok(await page.locator("#focus-part").evaluate((part) => Boolean(part.closest("[inert]"))));
+});
+
 test("the truth comes nearer, and the methods get their errors", async (page) => {
   await page.locator("#tab-methods").click();
   await page.locator("#truth-on").check();
@@ -248,6 +297,69 @@ test("the truth comes nearer, and the methods get their errors", async (page) =>
                              null, { timeout: kFrameMs });
   assert.ok(await page.locator("#error").isHidden());
 });
+
+/** Waits for another shader than `before` to be the method, and for its picture. Its hash. */
+async function shader_drawn(page, before) {
+  await page.waitForFunction((old) => {
+    const { value } = document.getElementById("method");
+    return value.startsWith("shader-") && value !== old;
+  }, before, { timeout: kFrameMs });
+  return drawn(page);
+}
+
+const hash_by_pipeline = (file) => JSON.parse(execFileSync(program, [
+  "render", "figures", "--size", "512x512", "--method",
+  path.join(__dirname, "../../../scenes/pipelines", file), "--json", "-o", path.join(work, "own.npy"),
+], { encoding: "utf8", stdio: ["ignore", "pipe", "ignore"] })).picture_hash;
+
+if (fs.existsSync(path.join(folder, "softfocus-compiler.wasm"))) {
+  test("a shader of one's own is compiled, measured, told by its line, and in the link", async (page, { context, address }) => {
+    const two_pass = await drawn(page);
+    await page.locator("#tab-shader").click();
+    assert.strictEqual(await shader_drawn(page, ""), hash_by_pipeline("lesson/gather.toml"));
+    await page.waitForFunction(() => /views.*FLIP/.test(document.getElementById("shader-truth").textContent),
+                               null, { timeout: kFrameMs });
+    const gather = await page.locator("#method").inputValue();
+    const text = await page.locator("#shader-text").inputValue();
+    await page.locator("#shader-text").fill(text.replace("vec3 sum", "vec3 some"));
+    await page.waitForSelector("#shader-fault:not([hidden])");
+    assert.match(await text_of(page, "shader-fault"), /^mine\.frag:23: 'sum': undeclared identifier/);
+    await page.locator("#shader-run").click();
+    await page.waitForFunction(() => {
+      const box = document.getElementById("shader-text");
+      return box.value.slice(box.selectionStart, box.selectionEnd).trim().startsWith("sum += ");
+    });
+    assert.strictEqual(await page.locator("#method").inputValue(), gather);
+
+    await page.locator("#shader-example").selectOption("two_pass");
+    assert.strictEqual(await shader_drawn(page, gather), two_pass);
+    assert.ok(await page.locator("#shader-fault").isHidden());
+    await page.waitForFunction(() => location.hash.includes("shader="), null, { timeout: 5000 });
+    const other = await context.newPage();
+    await other.goto(address + await page.evaluate(() => location.hash));
+    assert.strictEqual(await shader_drawn(other, ""), two_pass);
+    assert.strictEqual(await other.locator("#shader-text").inputValue(),
+                       await page.locator("#shader-text").inputValue());
+    assert.ok(await other.locator("#shader-panel").isVisible());
+    await other.close();
+  });
+
+  test("a shader of one's own stands beside the GPU's picture of it", async (page) => {
+    await page.locator("#tab-shader").click();
+    await shader_drawn(page, "");
+    const gather = await page.locator("#method").inputValue();
+    await page.locator("#shader-example").selectOption("two_pass");
+    await shader_drawn(page, gather);
+    await page.locator("#shader-gpu").click();
+    await page.waitForFunction(() => /values/.test(document.getElementById("shader-differences").textContent),
+                               null, { timeout: kFrameMs });
+    assert.match(await text_of(page, "shader-differences"),
+                 /Your shader, of the GPU’s sharp picture: all 1048576 values are equal/);
+    for (const id of ["shader-emulated", "shader-on-gpu", "shader-where"]) {
+      await page.waitForSelector(`#${id}:not([hidden])`, { timeout: kFrameMs });
+    }
+  });
+}
 
 test("a failure case is a scene", async (page) => {
   const first = await drawn(page);

@@ -32,6 +32,24 @@ async function start_module() {
   return { module, ask };
 }
 
+/** GLSL's compiler beside the module, which it answers for, or null in a build without it. */
+async function start_compiler() {
+  const place = path.join(path.dirname(script), "softfocus-compiler.js");
+  if (!fs.existsSync(place)) return null;
+  const compiler = await require(place)({ wasmBinary: fs.readFileSync(place.replace(/js$/, "wasm")) });
+  return (text) => {
+    const places = ["mine.frag", text].map((words) => {
+      const size = compiler.lengthBytesUTF8(words) + 1;
+      const at = compiler._malloc(size);
+      compiler.stringToUTF8(words, at, size);
+      return at;
+    });
+    const reply = JSON.parse(compiler.UTF8ToString(compiler._softfocus_compile(...places)));
+    places.forEach((at) => compiler._free(at));
+    return reply;
+  };
+}
+
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), "softfocus-page-"));
 
 function native_hash(words) {
@@ -180,11 +198,58 @@ const kTests = {
   },
 };
 
+const kPipelines = path.join(__dirname, "../../../scenes/pipelines");
+const passes_of = (name) => fs.readFileSync(path.join(kPipelines, name), "utf8")
+    .replace(/(shader = )"[^"]*"/g, '$1"mine.frag"');
+
+const kTestsOfCompiler = {
+  "the compiler names the line of a mistake, and goes on"({ compile }) {
+    const text = "#version 300 es\nprecision highp float;\nout vec4 colour;\nvoid main() { colour = vec4(x); }\n";
+    for (let i = 0; i < 3; ++i) {
+      assert.match(compile(text).error, /^mine\.frag:4: 'x': undeclared identifier/);
+      assert.strictEqual(compile(text.replace("x", "1.0")).error, undefined);
+    }
+    assert.match(compile("void main() {").error, /^mine\.frag:1: /);
+    assert.match(compile(`void main() { ${"{".repeat(1e5)}`).error, /./);
+  },
+
+  "two-pass as a text of the visitor's has the bits of two-pass"({ ask, compile }) {
+    const { text } = ask({ do: "shader_text", name: "two_pass.frag" });
+    const compiled = compile(text);
+    assert.strictEqual(compiled.error, undefined);
+    const { method, error } = ask({ do: "shader", name: "mine.frag", compiled,
+                                    passes: passes_of("two_pass.toml") });
+    assert.strictEqual(error, undefined);
+    ask({ do: "open", scene: "figures" });
+    const frame = { do: "frame", size: [96, 96], coc_scale: 3 };
+    assert.strictEqual(ask({ ...frame, method }).hash, ask({ ...frame, method: "two-pass" }).hash);
+    assert.ok(ask({ do: "truth", views: 8 }).flip_mean > 0);
+    assert.match(ask({ do: "shader", name: "mine.frag", compiled, passes: "[[pass]]\nshader = 1" }).error,
+                 /^mine\.toml:2: /);
+    assert.match(ask({ ...frame, method: "shader-0x1.toml" }).error, /shader-0x1/);
+  },
+
+  "the lesson's shaders have the bits that the program gives"({ ask, compile }) {
+    ask({ do: "open", scene: "figures" });
+    for (const name of ["gather", "weights"]) {
+      const place = path.join(kPipelines, "lesson", name);
+      const compiled = compile(fs.readFileSync(`${place}.frag`, "utf8"));
+      const { method, error } = ask({ do: "shader", name: "mine.frag", compiled,
+                                      passes: passes_of(`lesson/${name}.toml`) });
+      assert.strictEqual(error, undefined);
+      assert.strictEqual(ask({ do: "frame", size: [96, 64], method }).hash,
+                         native_hash(["figures", "--size", "96x64", "--method", `${place}.toml`]));
+    }
+  },
+};
+
 async function main() {
   const page = await start_module();
+  page.compile = await start_compiler();
   const { threads } = page.ask({ do: "start", threads: script.includes("threads") ? kThreads : 1 });
   const name = `${path.basename(script)}, ${threads} threads`;
-  for (const [claim, test] of Object.entries(kTests)) {
+  const tests = { ...kTests, ...(page.compile ? kTestsOfCompiler : {}) };
+  for (const [claim, test] of Object.entries(tests)) {
     try {
       test(page);
       console.log(`pass: ${name}: ${claim}`);

@@ -7,10 +7,12 @@
 
 #include "dof/measure/flip.h"
 #include "raster/images/texel.h"
+#include "raster/shaders/glsl/glsl.h"
 #include "scenes/lens_views/lens_points.h"
 #include "scenes/load/load_scene.h"
 #include "tests/support/gl_drivers.h"
 #include "tests/support/run_program.h"
+#include "tools/page/compiled_shader.h"
 #include "tools/page/page.h"
 #include "tools/stress/cases/stress_case.h"
 
@@ -373,4 +375,77 @@ TEST_CASE("the GPU's frame is the module's under the driver's profile, stage by 
   const Json of_case = ask_well(page, R"({"do":"gl_frame","size":[64,64],"gl_show":"difference"})");
   CHECK(of_case.at("differing").find("draw") == nullptr);
   CHECK(of_case.at("differing").at("filter").at("values").integer() == 0);
+}
+
+namespace {
+
+/// What the page's compiler sends of a text.
+Json compiled(const std::string& text) {
+  const auto none = [](const std::string&) { return std::optional<std::string>{}; };
+  return compiled_json(compile_glsl({.name = "mine.frag", .text = text}, none));
+}
+
+/// two-pass as a text of the visitor's.
+Json two_pass_request(Page& page) {
+  const Json text = ask_well(page, R"({"do":"shader_text","name":"two_pass.frag"})");
+  return {{"do", "shader"},
+          {"name", "mine.frag"},
+          {"compiled", compiled(text.at("text").text())},
+          {"passes", R"(
+[[pass]]
+shader = "mine.frag"
+uniforms = { direction = [1, 0], taps = "ceil(max_coc_px) - 1" }
+[[pass]]
+shader = "mine.frag"
+uniforms = { direction = [0, 1], taps = "ceil(max_coc_px) - 1" }
+)"}};
+}
+
+std::string method_of(Page& page, const Json& request) {
+  return ask_well(page, json_text(request)).at("method").text();
+}
+
+}  // namespace
+
+TEST_CASE("a shader of the visitor's is a method: two-pass as a text has the bits of two-pass") {
+  if (!missing_glsl().empty()) return;
+  Page page;
+  open(page, "figures");
+  const std::string method = method_of(page, two_pass_request(page));
+  const std::string settings = R"("size":[64,48],"coc_scale":3,"method":")";
+  CHECK(hash_of(page, settings + method + "\"") == hash_of(page, settings + "two-pass\""));
+  CHECK(method_of(page, two_pass_request(page)) == method);
+  ask_well(page, R"({"do":"frame","size":[64,48],"method":")" + method + "\"}");
+  CHECK(ask_well(page, R"({"do":"truth","views":4})").at("flip_mean").number() > 0.0);
+}
+
+TEST_CASE(
+    "passes that are wrong are told by their line, and no shader but the visitor's is there") {
+  if (!missing_glsl().empty()) return;
+  Page page;
+  Json request = two_pass_request(page);
+  const auto error_with = [&](const char* passes) {
+    request["passes"] = passes;
+    return ask(page, json_text(request)).at("error").text();
+  };
+  CHECK(error_with("[[pass]]\nshader = 1").starts_with("mine.toml:2: "));
+  CHECK(error_with("[[pass]]\nshader = \"one_pass.frag\"").find("\"mine.frag\" would be right") !=
+        std::string::npos);
+  CHECK(error_with("").find("[[pass]]") != std::string::npos);
+  CHECK(error_with("[[pass]]\nshader = \"mine.frag\"\nconvention = \"shadertoy\"")
+            .find("taken for plain") != std::string::npos);
+  CHECK(ask(page, R"({"do":"shader_text","name":"none.frag"})").find("error") != nullptr);
+}
+
+TEST_CASE("a shader of the visitor's has the GPU's bits, from the same text") {
+  if (!missing_glsl().empty() || !has_driver("llvmpipe")) return;
+  Page page;
+  open(page, "figures");
+  const std::string method = method_of(page, two_pass_request(page));
+  const Json reply =
+      ask_well(page, R"({"do":"gl_frame","size":[96,64],"gl_show":"difference","method":")" +
+                         method + "\"}");
+  CHECK(reply.at("differing").at("filter").at("of").integer() == 96 * 64 * 4);
+  CHECK(reply.at("differing").at("filter").at("values").integer() == 0);
+  CHECK(ask_well(page, R"({"do":"gl_frame","gl_show":"emulated"})").at("width").integer() == 96);
 }

@@ -55,6 +55,33 @@ test("a link gives the state back", async () => {
   assert.deepStrictEqual(with_link(opened, words), state);
 });
 
+test("a link carries a shader that is shown, up to a length, and what is broken is none", async () => {
+  const { first_side, first_state } = await module_of("state.js");
+  const { kMostLinkBytes, link_of, read_link, shader_of, take_shader } = await module_of("link.js");
+  const method = "shader-0x0123456789abcdef.toml";
+  const shader = { text: "// über\nvoid main() {}\n", passes: "[[pass]]\n", method };
+  const state = { ...first_state(), shader, sides: [{ ...first_side(), method }] };
+  const words = read_link(link_of(state));
+  assert.deepStrictEqual(shader_of(words), { text: shader.text, passes: shader.passes });
+  take_shader(words, "shader-0x1.toml");
+  assert.strictEqual(words.get("method"), "shader-0x1.toml");
+  take_shader(words, null);
+  assert.strictEqual(words.get("method"), "two-pass");
+  assert.strictEqual(shader_of(read_link(link_of({ ...state, sides: [first_side()] }))), null);
+  const long = { ...shader, text: "x".repeat(kMostLinkBytes) };
+  assert.strictEqual(shader_of(read_link(link_of({ ...state, shader: long }))), null);
+  assert.strictEqual(shader_of(read_link("shader=*&passes=AA")), null);
+});
+
+test("a fault's place is a line of one of the two texts", async () => {
+  const { line_range, place_of } = await module_of("panels/shader.js");
+  assert.deepStrictEqual(place_of("mine.frag:12: 'x': undeclared"), { id: "shader-text", line: 12 });
+  assert.deepStrictEqual(place_of("mine.toml:3: shader"), { id: "shader-passes", line: 3 });
+  assert.strictEqual(place_of("this page was built without"), null);
+  assert.deepStrictEqual(line_range("ab\ncde\nf", 2), [3, 6]);
+  assert.deepStrictEqual(line_range("ab\ncde\nf", 9), [7, 8]);
+});
+
 test("a link carries a failure case", async () => {
   const { first_state } = await module_of("state.js");
   const { link_of, read_link, state_to_open } = await module_of("link.js");
@@ -145,12 +172,18 @@ test("a picture's request and its command have the numbers that its encoding tak
   const { picture_request } = await module_of("panels/picture.js");
   const { refocus_command } = await module_of("panels/hashes.js");
   const { first_side, first_state, with_picture } = await module_of("state.js");
-  const encodings = [{ name: "metres", needs: "", takes: "scale offset" },
-                     { name: "device", needs: "near far", takes: "" }];
-  const picture = { depth: "/own/my d.png", encoding: "device", numbers: { near_m: 1, far_m: 9, scale: 2 } };
-  assert.deepStrictEqual(picture_request("/own/a.png", picture, encodings, null), {
-    do: "open", picture: "/own/a.png", depth: "/own/my d.png", encoding: "device", near_m: 1, far_m: 9 });
-  const believed = picture_request("/own/a.png", { ...picture, encoding: null }, encodings, "metres");
+  const listing = {
+    encodings: [{ name: "metres", needs: "", takes: "scale offset" },
+                { name: "device", needs: "near far", takes: "" },
+                { name: "circles", needs: "", takes: "" }],
+    readings: [{ name: "holes", key: "holes" }, { name: "depth-fit", key: "depth_fit" }],
+  };
+  const picture = { depth: "/own/my d.png", encoding: "device", numbers: { near_m: 1, far_m: 9, scale: 2 },
+                    choices: { depth_fit: "crop" } };
+  assert.deepStrictEqual(picture_request("/own/a.png", picture, listing, null), {
+    do: "open", picture: "/own/a.png", depth: "/own/my d.png", encoding: "device", near_m: 1, far_m: 9,
+    depth_fit: "crop" });
+  const believed = picture_request("/own/a.png", { ...picture, encoding: null }, listing, "metres");
   assert.deepStrictEqual([believed.encoding, believed.scale, believed.near_m], [null, 2, undefined]);
 
   const side = { ...first_side(), method: "accumulation", focus: { at: [0.5, 1] } };
@@ -158,10 +191,14 @@ test("a picture's request and its command have the numbers that its encoding tak
                              { width: 300, height: 200 }, [{ name: "two-pass", kind: "filter" }]);
   assert.deepStrictEqual([state.show, state.sides[0].method], ["image", "two-pass"]);
   assert.strictEqual(
-      refocus_command(state, state.sides[0], encodings),
+      refocus_command(state, state.sides[0], listing),
       "softfocus refocus a.png 'my d.png' -o picture.png --json --depth-encoding device --near 1 --far 9 " +
-      "--method two-pass --focus-at 150,199 --focal-length 50 --f-number 2 --shift 0 --coc-scale 1");
-  assert.strictEqual(refocus_command(state, { ...side, dof: false }, encodings), null);
+      "--depth-fit crop --method two-pass --focus-at 150,199 --focal-length 50 --f-number 2 --shift 0 --coc-scale 1");
+  assert.strictEqual(refocus_command(state, { ...side, dof: false }, listing), null);
+  const of_circles = { ...state, picture: { ...state.picture, encoding: "circles" } };
+  assert.strictEqual(
+      refocus_command(of_circles, state.sides[0], listing),
+      "softfocus refocus a.png --circles 'my d.png' -o picture.png --json --depth-fit crop --method two-pass");
 });
 
 test("radii are read from a line of text", async () => {

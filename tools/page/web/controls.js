@@ -2,6 +2,7 @@
 
 import { by_id, element } from "./dom.js";
 import { make_number } from "./numbers.js";
+import { is_own_method } from "./link.js";
 import { kStops, locked_fov_degrees, nearest_stop } from "./lens/photographer.js";
 import { kSizes, lens_keys, parameters, sensors } from "./state.js";
 
@@ -116,9 +117,15 @@ export function make_controls({ store, camera, move, focus_m, max_coc, object_m 
     const state = store.get();
     const now = store.side();
     by_id("dof").checked = now.dof;
+    const own = by_id("method-own");
+    if (own) {
+      own.hidden = !state.shader;
+      own.value = is_own_method(now.method) ? now.method : state.shader?.method ?? "";
+    }
     by_id("method").value = now.method;
     const method = methods.find(({ name }) => name === now.method);
-    by_id("method-summary").textContent = method?.summary ?? "";
+    by_id("method-summary").textContent =
+        method?.summary ?? (is_own_method(now.method) ? "the shader of the tab Shader" : "");
     const of_scene = by_id("method").querySelector("optgroup:last-child");
     if (of_scene) of_scene.disabled = Boolean(state.picture);
     by_id("samples-part").hidden = !method?.samples;
@@ -166,7 +173,8 @@ export function make_controls({ store, camera, move, focus_m, max_coc, object_m 
             .map(({ name, summary }) => element("option", { value: name, title: summary }, name));
         return element("optgroup", { label }, ...options);
       };
-      by_id("method").replaceChildren(group("Filters of the picture", "filter"),
+      const own = element("option", { id: "method-own", hidden: "" }, "your shader");
+      by_id("method").replaceChildren(own, group("Filters of the picture", "filter"),
                                       group("From the scene", "views"));
       update();
     },

@@ -32,6 +32,42 @@ function write_side(pairs, side, prefix) {
   else pairs.push([`${prefix}focus`, String(side.focus.m)]);
 }
 
+/** What a link holds of a shader and its passes at the most, in bytes. */
+export const kMostLinkBytes = 16384;
+
+const kOwnMethod = /^shader-0x[0-9a-f]+\.toml$/;
+/** Whether a method is the visitor's shader. */
+export const is_own_method = (name) => kOwnMethod.test(name ?? "");
+
+export const bytes_of = ({ text, passes }) => new TextEncoder().encode(text + passes).length;
+
+/** UTF-8 in the letters that a link leaves as they are (RFC 4648, section 5), and back. */
+function packed(text) {
+  const bytes = Array.from(new TextEncoder().encode(text), (byte) => String.fromCharCode(byte));
+  return btoa(bytes.join("")).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
+}
+function unpacked(letters) {
+  try {
+    const bytes = atob(letters.replaceAll("-", "+").replaceAll("_", "/"));
+    return new TextDecoder().decode(Uint8Array.from(bytes, (byte) => byte.charCodeAt(0)));
+  } catch {
+    return null;
+  }
+}
+
+/** The shader that a link carries, {text, passes}, or null. */
+export function shader_of(words) {
+  const [text, passes] = ["shader", "passes"].map((key) => unpacked(words.get(key) ?? "!"));
+  return text === null || passes === null ? null : { text, passes };
+}
+
+/** Puts the compiled shader in the place of what the link calls it; without one, two-pass. */
+export function take_shader(words, method) {
+  for (const key of ["method", "b.method"]) {
+    if (is_own_method(words.get(key))) words.set(key, method ?? "two-pass");
+  }
+}
+
 /** The fragment, without the #. A scene from the visitor's own files is left out. */
 export function link_of(state) {
   const pairs = [];
@@ -54,6 +90,10 @@ export function link_of(state) {
     pairs.push(["sensor", state.photo.sensor], ["lock", state.photo.lock ? "1" : "0"]);
   }
   if (state.object_m) pairs.push(["object", String(state.object_m)]);
+  const is_shown = state.sides.some(({ method }) => is_own_method(method));
+  if (state.shader && is_shown && bytes_of(state.shader) <= kMostLinkBytes) {
+    pairs.push(["shader", packed(state.shader.text)], ["passes", packed(state.shader.passes)]);
+  }
   return pairs.map(([key, value]) => `${key}=${encodeURIComponent(value)}`).join("&")
       .replaceAll("%2C", ",").replaceAll("%3A", ":");
 }

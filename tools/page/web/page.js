@@ -11,13 +11,14 @@ import { start_gpu } from "./panels/gpu.js";
 import { show_hash, start_hashes } from "./panels/hashes.js";
 import { start_keys } from "./keys.js";
 import { lens_numbers, start_lens_view } from "./lens/lens_view.js";
-import { link_of, read_link, state_to_open, with_link } from "./link.js";
+import { link_of, read_link, shader_of, state_to_open, take_shader, with_link } from "./link.js";
 import { make_methods_table } from "./panels/methods_table.js";
 import { start_own_files } from "./panels/own_files.js";
 import { kNoScene, make_picture, picture_request } from "./panels/picture.js";
 import { locked_fov_degrees } from "./lens/photographer.js";
 import { start_pointer } from "./pointer.js";
 import { save_report } from "./panels/report.js";
+import { start_shader } from "./panels/shader.js";
 import { first_state, make_store, parameters, set_parameters, with_picture, with_scene } from "./state.js";
 import { start_tabs } from "./tabs.js";
 import { start_theme } from "./theme.js";
@@ -34,7 +35,7 @@ const known_max_coc = [16, 16];
 let opened = null;   // the reply of the last open
 let last_reply = null;
 let build = "";
-let listing = { scenes: [], cases: [], methods: [], encodings: [] };
+let listing = { scenes: [], cases: [], methods: [], encodings: [], readings: [] };
 let playing = false;
 let quit = false;
 let read_own = async () => [];  // reads the visitor's files once more
@@ -88,8 +89,12 @@ let methods_table = { renew() {} };
 let cases = { show() {} };
 let picture = { show() {} };
 const gpu = start_gpu({ engine, store, settled: frames.settled });
+const shader = start_shader({
+  engine, store, settled: frames.settled, want_truth: () => truth.want(true),
+});
 const tabs = start_tabs(document.querySelector("[role=tablist]"), (id) => {
   if (id === "tab-lens") show_lens();
+  if (id === "tab-shader") shader.open();
 });
 
 function show_lens() {
@@ -176,7 +181,7 @@ function on_frame(reply, coarse, state, wall_ms) {
                          `${coarse ? ", coarse" : ""}`;
   document.title = `${fps} fps · ${ms_text(mean_ms)} ms · softfocus`;
   if (reply.focus_m && !coarse) keep_known(reply, state.editing);
-  show_hash(reply, state, state.sides[state.editing], listing.encodings, parameters);
+  show_hash(reply, state, state.sides[state.editing], listing);
   if (playing) {
     setTimeout(() => { if (playing) step(); }, Math.max(0, kFrameMs - wall_ms));
   } else if (!coarse && reply.hash === null) {
@@ -195,7 +200,7 @@ function show_scene_choice({ scene, failure }) {
 
 function open_request(what) {
   if (what.picture) {
-    return picture_request(what.scene, what.picture, listing.encodings, opened?.picture?.believed);
+    return picture_request(what.scene, what.picture, listing, opened?.picture?.believed);
   }
   return what.failure ? { do: "open", case: what.failure.name, value: what.failure.value }
                       : { do: "open", scene: what.scene };
@@ -213,6 +218,7 @@ async function reopen() {
     show_error("the module stopped again; reset the settings or choose another scene");
     return;
   }
+  await shader.again();
   const { reply } = await engine.ask(open_request(store.get()), kAsked, await read_own());
   if (reply.error) show_error(`${reply.error}; choose another scene`);
   frames.set_open(!reply.error);
@@ -325,7 +331,7 @@ function set_quit(on) {
 function reset() {
   if (!opened) return;
   const fresh = { ...first_state(), scene: store.get().scene, failure: store.get().failure,
-                  picture: store.get().picture };
+                  picture: store.get().picture, shader: store.get().shader };
   store.set(with_scene(fresh, opened));
   if (performance.now() - restarted_at < kRestartMs) {
     restarted_at = -Infinity;
@@ -371,11 +377,12 @@ async function point_at(place) {
   const { reply } = await engine.ask({ do: "pixel", x, y }, kAsked);
   asking_pixel = false;
   if (reply.error) return;
-  const depth = reply.depth_m === null ? "∞" : metres_text(reply.depth_m);
+  const metres = reply.depth_m === null ? "∞" : metres_text(reply.depth_m);
+  const depth = reply.has_depth ? ` · depth ${metres}` : "";
   const circle = reply.coc_radius_px === null || reply.coc_radius_px === undefined
       ? "" : ` · circle ${three_digits(reply.coc_radius_px)} px`;
   by_id("pixel").textContent =
-      `${x}, ${y} · depth ${depth}${circle} · light ${reply.colour_linear.map(three_digits).join(" ")}`;
+      `${x}, ${y}${depth}${circle} · light ${reply.colour_linear.map(three_digits).join(" ")}`;
 }
 
 const pointer = start_pointer(by_id("picture"), {
@@ -466,13 +473,16 @@ start_own_files({
   open: (path, read) => open({ scene: `/own/${path}` }, { read }),
   open_picture: (found, read) => open_picture({
     scene: `/own/${found.picture}`,
-    picture: { depth: found.depth && `/own/${found.depth}`, encoding: null, numbers: {} },
+    picture: { depth: found.depth && `/own/${found.depth}`, encoding: null, numbers: {}, choices: {} },
   }, read),
 });
 
 async function open_link(fragment) {
   const words = read_link(fragment);
-  const wanted = state_to_open(words);
+  const own = shader_of(words);
+  const method = own && await shader.restore(own);
+  take_shader(words, method);
+  const wanted = { ...state_to_open(words), shader: method ? { ...own, method } : null };
   const seed = /^random:([0-9]{1,20})$/.exec(wanted.scene ?? "");
   if (seed) by_id("seed").value = seed[1];
   const done = await open(wanted, { words });
@@ -505,7 +515,7 @@ async function start(ready) {
   controls.set_methods(listing.methods);
   cases = make_cases({ cases: listing.cases, open: (name, value) => open_newest({ failure: { name, value } }) });
   picture = make_picture({
-    engine, encodings: listing.encodings,
+    engine, listing,
     change: (reading) => {
       const { scene, picture: now } = store.get();
       return open_picture({ scene, picture: { ...now, ...reading } });
@@ -517,5 +527,7 @@ async function start(ready) {
     methods: listing.methods.filter(({ kind }) => kind === "filter"),
     choose: (method, radius) => store.change_side({ method, max_coc_px: radius }),
   });
+  await shader.find_compiler();
   await open_link(location.hash);
+  if (store.get().shader) tabs.choose("tab-shader");
 }

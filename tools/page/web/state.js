@@ -42,8 +42,11 @@ export function first_state() {
     /** A name, a file under /own/, or null while a failure case is open. */
     scene: "figures",
     failure: null,  // {name, value}
-    /** Of a picture, whose file is `scene`: {depth, size, encoding, numbers}; see panels/picture.js. */
+    /** Of a picture, whose file is `scene`: {depth, size, encoding, numbers,
+     * choices}; see panels/picture.js. */
     picture: null,
+    /** The visitor's shader that ran last: {text, passes, method}. */
+    shader: null,
     size: [512, 512],
     time: 0,
     camera: null,  // null: the scene's own, {position_m, target_m, fov_y_degrees}

@@ -16,12 +16,13 @@ export function start_tabs(list, on_shown) {
   for (const tab of tabs) {
     tab.addEventListener("click", () => choose(tab));
     tab.addEventListener("keydown", (event) => {
-      const at = tabs.indexOf(tab);
-      const next = { ArrowRight: at + 1, ArrowLeft: at - 1, Home: 0, End: tabs.length - 1 }[event.key];
+      const shown = tabs.filter(({ hidden }) => !hidden);
+      const at = shown.indexOf(tab);
+      const next = { ArrowRight: at + 1, ArrowLeft: at - 1, Home: 0, End: shown.length - 1 }[event.key];
       if (next === undefined) return;
       event.preventDefault();
       event.stopPropagation();
-      const to = tabs[(next + tabs.length) % tabs.length];
+      const to = shown[(next + shown.length) % shown.length];
       choose(to);
       to.focus();
     });

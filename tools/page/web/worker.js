@@ -9,6 +9,9 @@
 // If the module stops for good, the reply is {error}, and a new module takes its place, in which
 // nothing is open: {restarted: true, cancel}.
 //
+// A request `shader` has a `text`, which GLSL's compiler, a module of its own, compiles first: what
+// it made goes on to the module as `compiled`.
+//
 // A page in one file gives the module's parts as self.softfocus_parts: {script, wasm}, a function
 // and a promise of bytes, and loads no other file.
 "use strict";
@@ -78,15 +81,50 @@ async function make_module(build, bytes) {
   return module;
 }
 
-function ask(module, request) {
-  const text = JSON.stringify(request);
+/** A text in the module's memory, or 0 where there is none left. */
+function put_text(module, text) {
   const size = module.lengthBytesUTF8(text) + 1;
   const place = module._malloc(size);
+  if (place !== 0) module.stringToUTF8(text, place, size);
+  return place;
+}
+
+function ask(module, request) {
+  const place = put_text(module, JSON.stringify(request));
   if (place === 0) return { error: "there is not enough memory for this request" };
-  module.stringToUTF8(text, place, size);
   module._softfocus_request(place);
   module._free(place);
   return JSON.parse(module.UTF8ToString(module._softfocus_reply()));
+}
+
+let compiler = null;
+
+/** GLSL's compiler, loaded for the first shader. */
+async function loaded_compiler() {
+  if (compiler) return compiler;
+  if (!can_run("exceptions") || !can_run("simd")) {
+    throw new Error("the compiler needs WebAssembly's exceptions and SIMD, which this browser has not");
+  }
+  const response = self.softfocus_parts ? null : await fetch("softfocus-compiler.wasm");
+  if (!response?.ok) throw new Error("this page was built without GLSL's compiler");
+  if (!self.createSoftfocusCompiler) importScripts("softfocus-compiler.js");
+  compiler = await self.createSoftfocusCompiler({ wasmBinary: await response.arrayBuffer() });
+  return compiler;
+}
+
+/** The request with what its text became, or {error}. */
+async function with_compiled({ text, ...request }) {
+  try {
+    const of = await loaded_compiler();
+    const places = [request.name, text].map((words) => put_text(of, words));
+    if (places.includes(0)) throw new Error("there is not enough memory for this text");
+    const compiled = JSON.parse(of.UTF8ToString(of._softfocus_compile(...places)));
+    for (const place of places) of._free(place);
+    return compiled.error ? compiled : { ...request, compiled };
+  } catch (error) {
+    compiler = null;  // out of stack or memory: it is in no known state
+    return { error: error.message ?? String(error) };
+  }
 }
 
 /**
@@ -141,7 +179,8 @@ async function run() {
     let reply, pixels, file;
     try {
       for (const own of files ?? []) write_file(module, own);
-      reply = ask(module, request);
+      const asked = request.do === "shader" ? await with_compiled(request) : request;
+      reply = asked.error ? asked : ask(module, asked);
       pixels = pixels_of(module, reply);
       file = file_of(module, reply);
     } catch (error) {

@@ -18,7 +18,7 @@ function missing_here() {
   return lacks;
 }
 
-function difference_text({ values, of, largest_half_ulps, first }) {
+export function difference_text({ values, of, largest_half_ulps, first }) {
   if (values === 0) return `all ${of} values are equal`;
   const place = first ? `; the first at ${first.x}, ${first.y}` : "";
   return `${values} of ${of} values differ, by at most ${largest_half_ulps} half-ULPs${place}`;
@@ -72,7 +72,7 @@ export function start_gpu({ engine, store, settled }) {
         element("li", {}, `Profile ${reply.profile}`),
         ...(draw ? [element("li", {}, `Draw: ${difference_text(draw)}`)] : []),
         ...(filter ? [element("li", {}, `Filter, of the GPU’s sharp picture: ${difference_text(filter)}`)]
-                   : [element("li", {}, "Filter: two-pass and one-pass alone have shaders")]),
+                   : [element("li", {}, "Filter: two-pass, one-pass and the tab Shader alone have shaders")]),
         element("li", {}, `Frame: ${difference_text(frame)}`));
   }
 

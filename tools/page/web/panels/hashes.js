@@ -4,7 +4,7 @@
 import { announce, by_id, copy_text, element, save_text, show_error } from "../dom.js";
 import { kBackground } from "../engine.js";
 import { lens_keys, parameters } from "../state.js";
-import { depth_words } from "./picture.js";
+import { depth_words, kCircles } from "./picture.js";
 
 const kSlice = 8;  // golden hashes a request
 
@@ -27,14 +27,20 @@ const name_of = (path) => {
   return /^[\w.+-]+$/.test(name) ? name : `'${name.replaceAll("'", "'\\''")}'`;
 };
 
-/** The command for a picture whose --json tells the same picture_hash, or null if there is none. */
-export function refocus_command(state, side, encodings = []) {
+/**
+ * The command for a picture whose --json tells the same picture_hash, or null if there is none.
+ * `listing` is the `scenes` reply.
+ */
+export function refocus_command(state, side, listing) {
   const { picture } = state;
   if (!side.dof) return null;
   const show = state.show === "coc" || state.show === "depth" ? [`--show ${state.show}`] : [];
-  return ["softfocus refocus", name_of(state.scene), ...(picture.depth ? [name_of(picture.depth)] : []),
-          "-o picture.png --json", ...depth_words(picture, encodings), ...show,
-          `--method ${side.method}`, ...lens_words(state, side),
+  const has_circles = picture.encoding === kCircles;
+  const depth = picture.depth ? [name_of(picture.depth)] : [];
+  const files = has_circles ? [`--circles ${name_of(picture.depth ?? state.scene)}`] : depth;
+  return ["softfocus refocus", name_of(state.scene), ...files,
+          "-o picture.png --json", ...depth_words(picture, listing), ...show,
+          `--method ${side.method}`, ...(has_circles ? [] : lens_words(state, side)),
           ...(side.max_coc_px === null ? [] : [`--max-coc ${side.max_coc_px}`])].join(" ");
 }
 
@@ -50,9 +56,9 @@ function command_note(state, command) {
          (state.scene.startsWith("/own/") ? ", beside your own files." : ".");
 }
 
-export function show_hash(reply, state, side, encodings) {
+export function show_hash(reply, state, side, listing) {
   const has_lens = !state.picture || reply.focus_m;
-  const found = state.picture ? refocus_command(state, side, encodings) : reply.command;
+  const found = state.picture ? refocus_command(state, side, listing) : reply.command;
   const command = reply.hash && has_lens ? found : null;
   by_id("hash").textContent = reply.hash ?? "–";
   by_id("hash-full").textContent = reply.hash ?? "–";

@@ -8,9 +8,15 @@ export const kNoScene = "a picture has no scene to draw: choose a scene for this
 
 const words_of = ({ needs, takes }) => `${needs} ${takes}`.split(" ").filter(Boolean);
 
-/** `open`'s request. Numbers that the encoding makes no use of are kept, but not sent. */
-export function picture_request(path, { depth, encoding, numbers }, encodings, believed) {
-  const request = { do: "open", picture: path, depth, encoding };
+/** The encoding that is none: radii of circles, which need no lens. */
+export const kCircles = "circles";
+
+/**
+ * `open`'s request. Numbers that the encoding makes no use of are kept, but not sent. `encodings`
+ * and `readings` are those of the `scenes` reply.
+ */
+export function picture_request(path, { depth, encoding, numbers, choices }, { encodings }, believed) {
+  const request = { do: "open", picture: path, depth, encoding, ...choices };
   const known = encodings.find(({ name }) => name === (encoding ?? believed));
   for (const word of known ? words_of(known) : []) {
     const { key } = parameters[word];
@@ -19,25 +25,27 @@ export function picture_request(path, { depth, encoding, numbers }, encodings, b
   return request;
 }
 
-/** The same as options of `softfocus refocus`. */
-export function depth_words({ encoding, numbers }, encodings) {
+/** The same as options of `softfocus refocus`, but for the circles' file. */
+export function depth_words({ encoding, numbers, choices }, { encodings, readings }) {
   const known = encodings.find(({ name }) => name === encoding);
-  if (!known) return [];
+  const chosen = readings.filter(({ key }) => choices[key])
+      .map(({ name, key }) => `--${name} ${choices[key]}`);
+  if (!known || encoding === kCircles) return chosen;
   return [`--depth-encoding ${encoding}`,
           ...words_of(known).filter((word) => Number.isFinite(numbers[parameters[word].key]))
-              .map((word) => `--${word} ${numbers[parameters[word].key]}`)];
+              .map((word) => `--${word} ${numbers[parameters[word].key]}`), ...chosen];
 }
 
 /**
- * The controls of the depth map. `change({encoding, numbers})` reads it anew and resolves when that
- * is done. `encodings` are those of the `scenes` reply.
+ * The controls of the depth map. `change({encoding, numbers, choices})` reads it anew and resolves
+ * when that is done. `listing` is the `scenes` reply.
  */
-export function make_picture({ engine, encodings, change, stem }) {
+export function make_picture({ engine, listing: { encodings, readings }, change, stem }) {
   const choice = by_id("encoding");
   const numbers_part = by_id("encoding-numbers");
   let state = null;   // the picture of the state
   let opened = null;  // and of the reply
-  let reading = { encoding: null, numbers: {} };  // as last chosen, which the state may not be yet
+  let reading = { encoding: null, numbers: {}, choices: {} };  // as last chosen, which the state may not be yet
   let changes = 0;    // under way
 
   const believed_option = element("option", { value: "" }, "");
@@ -51,6 +59,16 @@ export function make_picture({ engine, encodings, change, stem }) {
     if (changes === 0) show(state, opened);
   }
   choice.addEventListener("change", () => read({ encoding: choice.value || null }));
+
+  function choice_field({ name, key, text, values, preset }) {
+    const field = element("select", { id: `reading-${name}`, title: text },
+                          ...(preset ? [] : [element("option", { value: "" }, "as it is")]),
+                          ...values.map((value) => element("option", { value }, value)));
+    field.addEventListener("change", () => (
+        read({ choices: { ...reading.choices, [key]: field.value || null } })));
+    return element("div", { class: "line" }, element("label", { for: `reading-${name}` }, name), field);
+  }
+  by_id("depth-readings").replaceChildren(...readings.map(choice_field));
 
   function number_field(word) {
     const { key, unit, text, least, most } = parameters[word];
@@ -79,8 +97,14 @@ export function make_picture({ engine, encodings, change, stem }) {
     by_id("depth-part").hidden = !state;
     by_id("no-scene").hidden = !state;
     for (const part of document.querySelectorAll("[data-scene]")) part.inert = Boolean(state);
+    for (const part of document.querySelectorAll("[data-lens]")) {
+      part.inert = state?.encoding === kCircles;
+    }
     if (!state || changes > 0) return;
-    reading = { encoding: state.encoding, numbers: state.numbers };
+    reading = { encoding: state.encoding, numbers: state.numbers, choices: state.choices };
+    for (const { name, key, preset } of readings) {
+      by_id(`reading-${name}`).value = state.choices[key] ?? preset ?? "";
+    }
     believed_option.textContent = opened.believed ? `by its numbers: ${opened.believed}` : "choose…";
     choice.value = state.encoding ?? "";
     const used = encodings.find(({ name }) => name === opened.encoding);

@@ -21,12 +21,15 @@ export function make_truth({ engine, settled, shown, paint, on_error }) {
   let painted_at = -1;   // samples of the truth that is shown
   const waiting = [];    // told when the truth is good enough
 
+  function say(words) {
+    for (const id of ["truth-state", "shader-truth"]) by_id(id).textContent = words;
+  }
+
   function tell() {
     const progress = by_id("truth-progress");
-    const state = by_id("truth-state");
     if (!last) {
       progress.value = 0;
-      state.textContent = wanted ? "waiting for the whole picture" : "not begun";
+      say(wanted ? "waiting for the whole picture" : "not begun");
       return;
     }
     const flip = last.flip_mean === undefined || last.flip_mean === null
@@ -36,7 +39,7 @@ export function make_truth({ engine, settled, shown, paint, on_error }) {
     progress.value = last.done ? 1 : Math.min(0.95, Math.log2(1 + last.samples) / 12);
     // A case whose answer is written down needs no views.
     const views_text = last.samples === 0 ? "known answer" : `${last.samples} views`;
-    state.textContent = `${views_text}${noise}${flip}${last.done ? " · good enough" : ""}`;
+    say(`${views_text}${noise}${flip}${last.done ? " · good enough" : ""}`);
   }
 
   async function show(force) {
@@ -59,7 +62,7 @@ export function make_truth({ engine, settled, shown, paint, on_error }) {
     running = false;
     if (reply.error) {
       last = null;
-      by_id("truth-state").textContent = reply.error;
+      say(reply.error);
       wanted = false;
       by_id("truth-on").checked = false;
       return;
