@@ -30,6 +30,7 @@ KNOWN = {
     "interpolation_mismatch_1": "the fragment shader's interpolation counts, as since GLSL 4.40",
     "predefined_macros/file_": "__FILE__ is not 0: the compiler gives the text's number",
     "conditional_inclusion/define_defined": "the compiler refuses a macro of the name defined",
+    "reserved_keywords/sample_": "a name, as browsers have it; public shaders use it so",
     "gl33/preprocessor/basic/stringification": "the compiler takes # in a macro",
 }
 
