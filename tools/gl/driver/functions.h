@@ -101,6 +101,14 @@ using GLsizeiptr = std::ptrdiff_t;
     (GLenum target, GLint level, GLint format, GLsizei width, GLsizei height, GLint border,       \
      GLenum layout, GLenum type, const void* data),                                               \
     (target, level, format, width, height, border, layout, type, data))                           \
+  X(void, TexImage3D,                                                                             \
+    (GLenum target, GLint level, GLint format, GLsizei width, GLsizei height, GLsizei depth,      \
+     GLint border, GLenum layout, GLenum type, const void* data),                                 \
+    (target, level, format, width, height, depth, border, layout, type, data))                    \
+  X(void, TexSubImage3D,                                                                          \
+    (GLenum target, GLint level, GLint x, GLint y, GLint z, GLsizei width, GLsizei height,        \
+     GLsizei depth, GLenum layout, GLenum type, const void* data),                                \
+    (target, level, x, y, z, width, height, depth, layout, type, data))                           \
   X(void, TexParameteri, (GLenum target, GLenum what, GLint value), (target, what, value))        \
   X(void, Uniform1f, (GLint at, GLfloat x), (at, x))                                              \
   X(void, Uniform2f, (GLint at, GLfloat x, GLfloat y), (at, x, y))                                \

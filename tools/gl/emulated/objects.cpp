@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "raster/images/sliced_texture.h"
 #include "raster/images/texel.h"
 #include "raster/passes/draw_mipmaps.h"
 #include "raster/pipeline/merge.h"
@@ -68,6 +69,36 @@ std::byte* texel_at(Image& image, int x, int y) {
          row_bytes_of(image, x);
 }
 
+/// A level of a layer, slice or face of the texture that is bound.
+Image& slice_at(int slice, GLint level) {
+  Texture& texture = bound_texture().texture;
+  const auto number = static_cast<std::size_t>(slice), at = static_cast<std::size_t>(level);
+  if (texture.behind.size() < number) texture.behind.resize(number);
+  std::vector<Image>& levels = slice == 0 ? texture.levels : texture.behind[number - 1].levels;
+  if (levels.size() <= at) levels.resize(at + 1);
+  return levels[at];
+}
+
+/// Null, and an error of GL, if it cannot be.
+Image* new_slice(int slice, GLint level, GLint format, GLsizei width, GLsizei height) {
+  const std::optional<Format> as = format_of(static_cast<GLenum>(format));
+  if (!as || width > kMaxImageSize || height > kMaxImageSize) {
+    emulated::gl().error = as ? GL_INVALID_VALUE : GL_INVALID_ENUM;
+    return nullptr;
+  }
+  Image& image = slice_at(slice, level);
+  image = make_image(*as, width, height);
+  return &image;
+}
+
+/// Rows without gaps.
+void put_rows(Image& image, const std::byte* from) {
+  const std::size_t row_bytes = row_bytes_of(image, image.width);
+  for (int y = 0; y < image.height; ++y, from += row_bytes) {
+    std::memcpy(texel_at(image, 0, y), from, row_bytes);
+  }
+}
+
 bool holds(const Image* image, int x, int y, int width, int height) {
   return image != nullptr && x >= 0 && y >= 0 && width <= image->width - x &&
          height <= image->height - y;
@@ -110,23 +141,32 @@ void DeleteTextures(GLsizei count, const GLuint* names) {
 void ActiveTexture(GLenum unit) { gl().unit = (unit - GL_TEXTURE0) % kEmulatedUnits; }
 void BindTexture(GLenum /*target*/, GLuint texture) { gl().units[gl().unit] = texture; }
 
-void TexImage2D(GLenum /*target*/, GLint level, GLint format, GLsizei width, GLsizei height,
+void TexImage2D(GLenum target, GLint level, GLint format, GLsizei width, GLsizei height,
                 GLint /*border*/, GLenum /*layout*/, GLenum /*type*/, const void* data) {
-  const std::optional<Format> as = format_of(static_cast<GLenum>(format));
-  if (!as || width > kMaxImageSize || height > kMaxImageSize) {
-    gl().error = as ? GL_INVALID_VALUE : GL_INVALID_ENUM;
+  const bool is_face = target != GL_TEXTURE_2D;
+  bound_texture().texture.shape = is_face ? TextureShape::cube : TextureShape::flat;
+  const int slice = is_face ? static_cast<int>(target - GL_TEXTURE_CUBE_MAP_POSITIVE_X) : 0;
+  Image* const image = new_slice(slice, level, format, width, height);
+  if (image != nullptr && data != nullptr) put_rows(*image, static_cast<const std::byte*>(data));
+}
+
+void TexImage3D(GLenum target, GLint level, GLint format, GLsizei width, GLsizei height,
+                GLsizei depth, GLint /*border*/, GLenum /*layout*/, GLenum /*type*/,
+                const void* /*data*/) {
+  bound_texture().texture.shape =
+      target == GL_TEXTURE_3D ? TextureShape::volume : TextureShape::array;
+  for (int slice = 0; slice < depth; ++slice) new_slice(slice, level, format, width, height);
+}
+
+void TexSubImage3D(GLenum /*target*/, GLint level, GLint /*x*/, GLint /*y*/, GLint z, GLsizei width,
+                   GLsizei height, GLsizei depth, GLenum /*layout*/, GLenum /*type*/,
+                   const void* data) {
+  Image& image = slice_at(z, level);
+  if (depth != 1 || width != image.width || height != image.height) {
+    gl().error = GL_INVALID_VALUE;  // whole slices, one by one, are what is asked for
     return;
   }
-  std::vector<Image>& levels = bound_texture().texture.levels;
-  const auto at = static_cast<std::size_t>(level);
-  if (levels.size() <= at) levels.resize(at + 1);
-  Image& image = levels[at] = make_image(*as, width, height);
-  const std::size_t row_bytes = row_bytes_of(image, width);
-  for (int y = 0; y < height && data != nullptr; ++y) {
-    std::memcpy(texel_at(image, 0, y),
-                static_cast<const std::byte*>(data) + static_cast<std::size_t>(y) * row_bytes,
-                row_bytes);
-  }
+  put_rows(image, static_cast<const std::byte*>(data));
 }
 
 void TexParameteri(GLenum /*target*/, GLenum what, GLint value) {
@@ -139,6 +179,7 @@ void TexParameteri(GLenum /*target*/, GLenum what, GLint value) {
   switch (what) {
     case GL_TEXTURE_WRAP_S: sampler.wrap_u = wrap(); return;
     case GL_TEXTURE_WRAP_T: sampler.wrap_v = wrap(); return;
+    case GL_TEXTURE_WRAP_R: sampler.wrap_w = wrap(); return;
     case GL_TEXTURE_MIN_FILTER:
       sampler.filter = value == GL_LINEAR_MIPMAP_LINEAR ? Filter::trilinear
                        : value == GL_NEAREST || value == GL_NEAREST_MIPMAP_NEAREST
@@ -152,6 +193,7 @@ void TexParameteri(GLenum /*target*/, GLenum what, GLint value) {
 
 void GenerateMipmap(GLenum /*target*/) {
   Texture& texture = bound_texture().texture;
+  if (texture.shape != TextureShape::flat) return generate_sliced_mipmaps(texture, gl().profile);
   texture.levels.resize(1);
   generate_mipmaps_as(texture, gl().profile);
 }
