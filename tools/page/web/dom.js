@@ -45,6 +45,15 @@ export function paint_pixels(canvas, width, height, pixels) {
   canvas.getContext("2d").putImageData(new ImageData(rows, width, height), 0, 0);
 }
 
+/** A picture of the module's in a figure, with its caption; no pixels hide it. */
+export function paint_figure(id, words, { reply, pixels }) {
+  const figure = by_id(id);
+  figure.hidden = !pixels;
+  if (!pixels) return;
+  figure.querySelector("figcaption").textContent = words;
+  paint_pixels(figure.querySelector("canvas"), reply.width, reply.height, pixels);
+}
+
 /** Saves text as a file of the visitor's. */
 export function save_text(name, text, type = "text/plain") {
   save_file(name, text, `${type};charset=utf-8`);

@@ -1,7 +1,7 @@
 // Your GPU: WebGL2 draws and filters the shown frame with the project's GLSL, and every value is
 // compared with the module's.
 
-import { by_id, element, paint_pixels, save_text } from "../dom.js";
+import { by_id, element, paint_figure, save_text } from "../dom.js";
 import { kAsked, kBackground } from "../engine.js";
 import { frame_request } from "../state.js";
 import { ms_text } from "../units.js";
@@ -49,14 +49,6 @@ export function start_gpu({ engine, store, settled }) {
     return true;
   }
 
-  function paint(id, words, { reply, pixels }) {
-    const figure = by_id(id);
-    figure.hidden = !pixels;
-    if (!pixels) return;
-    figure.querySelector("figcaption").textContent = words;
-    paint_pixels(figure.querySelector("canvas"), reply.width, reply.height, pixels);
-  }
-
   function show_numbers(reply) {
     const { draw, filter, frame } = reply.differing;
     const head = ["", "Module, ms", "Your GPU, ms"].map((word) => element("th", { scope: "col" }, word));
@@ -88,9 +80,9 @@ export function start_gpu({ engine, store, settled }) {
     state.textContent = where.reply.error ?? "";
     if (where.reply.error) return;
     show_numbers(where.reply);
-    paint("gpu-where", "Where values differ; black is equal", where);
+    paint_figure("gpu-where", "Where values differ; black is equal", where);
     const picture = await engine.ask({ do: "gl_frame", gl_show: "picture" }, kAsked);
-    if (!picture.reply.error) paint("gpu-picture", "Your GPU’s picture", picture);
+    if (!picture.reply.error) paint_figure("gpu-picture", "Your GPU’s picture", picture);
   }
 
   async function probe() {

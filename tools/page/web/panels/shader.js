@@ -1,7 +1,7 @@
 // A filter of the visitor's: its shader and its passes, compiled while he types. It is a method
 // like the others; here it stands beside his GPU and the truth.
 
-import { announce, by_id, element, paint_pixels } from "../dom.js";
+import { announce, by_id, element, paint_figure } from "../dom.js";
 import { kAsked } from "../engine.js";
 import { bytes_of, is_own_method, kMostLinkBytes } from "../link.js";
 import { frame_request } from "../state.js";
@@ -111,14 +111,6 @@ export function start_shader({ engine, store, settled, want_truth }) {
     }
   }
 
-  function paint(id, words, { reply, pixels }) {
-    const figure = by_id(id);
-    figure.hidden = !pixels;
-    if (!pixels) return;
-    figure.querySelector("figcaption").textContent = words;
-    paint_pixels(figure.querySelector("canvas"), reply.width, reply.height, pixels);
-  }
-
   async function beside_gpu() {
     if (!settled() || !is_own_method(store.side().method)) {
       state.textContent = "run the shader first, and wait for the whole picture";
@@ -138,10 +130,10 @@ export function start_shader({ engine, store, settled, want_truth }) {
     by_id("shader-differences").replaceChildren(element("li", {}, words),
                                                 element("li", {}, `Profile ${where.reply.profile}`));
     announce(words);
-    paint("shader-where", "Where values differ; black is equal", where);
+    paint_figure("shader-where", "Where values differ; black is equal", where);
     for (const [id, gl_show, caption] of [["shader-emulated", "emulated", "Here, of the GPU’s sharp picture"],
                                           ["shader-on-gpu", "picture", "On your GPU"]]) {
-      paint(id, caption, await engine.ask({ do: "gl_frame", gl_show }, kAsked));
+      paint_figure(id, caption, await engine.ask({ do: "gl_frame", gl_show }, kAsked));
     }
   }
 
