@@ -3,6 +3,7 @@
 #include "dof/c/shader_arguments.h"
 
 #include <algorithm>
+#include <cassert>
 #include <initializer_list>
 #include <numeric>
 #include <string>
@@ -169,7 +170,9 @@ std::vector<ImageView> read_slices(const std::string& name, const softfocus_texe
   const auto texel = static_cast<std::ptrdiff_t>(bytes_per_texel(slices[0].format));
   const std::string stride = name + ".slice_bytes";
   range_of({stride, texels.first, texel, next, texel}, 1, count);
-  if (next % (texel / channel_count(slices[0].format)) != 0) {
+  const std::ptrdiff_t channel = texel / channel_count(slices[0].format);
+  assert(channel > 0);
+  if (next % channel != 0) {
     refuse(stride, std::to_string(next) + " is no multiple of a channel's bytes");
   }
   slices.reserve(static_cast<std::size_t>(count));

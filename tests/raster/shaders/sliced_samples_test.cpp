@@ -33,6 +33,7 @@ UserShader slices_shader(const std::string& declared, const std::string& body) {
 Texture slices_of_noise(TextureShape shape, int size, int count) {
   Random random{3};
   std::vector<Image> slices;
+  slices.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     slices.push_back(random_texture(Format::rgba16f, size, random).levels[0]);
   }

@@ -222,7 +222,7 @@ SOFTFOCUS_GL_VECTORS(uiv, GLuint)
 #define SOFTFOCUS_GL_MATRICES(SUFFIX, NUMBERS)                                  \
   void UniformMatrix##SUFFIX##fv(GLint at, GLsizei n, GLboolean /*transposed*/, \
                                  const GLfloat* v) {                            \
-    set_uniforms(at, NUMBERS* n, v);                                            \
+    set_uniforms(at, (NUMBERS)*n, v);                                           \
   }
 SOFTFOCUS_GL_MATRICES(2, 4)
 SOFTFOCUS_GL_MATRICES(2x3, 6)
