@@ -8,6 +8,7 @@
 #include "tools/cli/interrupts.h"
 #include "tools/cli/platform.h"
 #include "tools/gl/driver/driver.h"
+#include "tools/options/method_options.h"
 #include "tools/render/options.h"
 
 namespace softfocus {
@@ -63,7 +64,8 @@ int run(std::vector<std::string> arguments) {
       add_selftest_command(*program),     add_help_command(*program),
       add_documentation_command(*program)};
   try {
-    const Parsed parsed = parse(*program, with_autofocus_joined(std::move(arguments)));
+    arguments = with_autofocus_joined(std::move(arguments));
+    const Parsed parsed = parse(*program, with_parameters_joined(*program, std::move(arguments)));
     if (parsed.answered) return finish(kDone, kFailed);
     for (const Command& command : commands) {
       if (command.parser == parsed.command) return run_command(command);

@@ -159,21 +159,20 @@ Profile profile_of(const std::string& argument, const char* name) {
 }
 
 softfocus_settings default_settings() {
-  return {.struct_size = sizeof(softfocus_settings),
-          .method = "two-pass",
-          .profile = "ieee",
-          .focal_length_mm = parameter::kFocalLength.preset,
-          .f_number = parameter::kFNumber.preset,
-          .focus_m = parameter::kFocus.preset,
-          .sensor_width_mm = 36.0,
-          .sensor_height_mm = 24.0,
-          .fov_y_degrees = 0.0,
-          .coc_scale = parameter::kCocScale.preset,
-          .blur_at_infinity_px = 0.0,
-          .max_radius_px = 0.0,
-          .leak = parameter::kLeak.preset,
-          .budget = parameter::kBudget.preset,
-          .max_error = parameter::kMaxError.preset};
+  softfocus_settings settings{};
+  settings.struct_size = sizeof settings;
+  settings.method = "two-pass";
+  settings.profile = "ieee";
+  for (const LensNumber& number : kLensNumbers) {
+    settings.*kLensFields[number.place] = number.parameter.preset;
+  }
+  settings.sensor_width_mm = 36.0;
+  settings.sensor_height_mm = 24.0;
+  settings.coc_scale = parameter::kCocScale.preset;
+  settings.leak = parameter::kLeak.preset;
+  settings.budget = parameter::kBudget.preset;
+  settings.max_error = parameter::kMaxError.preset;
+  return settings;
 }
 
 ReadSettings read_settings(const softfocus_settings* given, int width_px, int height_px) {

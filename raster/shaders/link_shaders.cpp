@@ -7,6 +7,32 @@
 namespace softfocus {
 namespace {
 
+const SpirvDecorations& decorations_of(const SpirvModule& module, SpirvId id) {
+  static const SpirvDecorations none;
+  const auto found = module.decorations.find(id);
+  return found == module.decorations.end() ? none : found->second;
+}
+
+const SpirvDecorations& decorations_of(const SpirvModule& module, SpirvId type,
+                                       std::size_t member) {
+  static const SpirvDecorations none;
+  const SpirvDecorations& of = decorations_of(module, type);
+  return member < of.members.size() ? of.members[member] : none;
+}
+
+bool is_used(const SpirvModule& module, SpirvId id) {
+  for (const auto& [number, function] : module.functions) {
+    for (const SpirvBlock& block : function.blocks) {
+      for (const SpirvInstruction& in : block.instructions) {
+        if (std::find(in.operands.begin(), in.operands.end(), id) != in.operands.end()) {
+          return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
 /// Ports of one storage of a module.
 class Ports {
  public:
@@ -20,22 +46,16 @@ class Ports {
  private:
   const SpirvModule& module_;
 
-  const SpirvDecorations& decorations(SpirvId id) const {
-    static const SpirvDecorations none;
-    const auto found = module_.decorations.find(id);
-    return found == module_.decorations.end() ? none : found->second;
-  }
-
   void add(const SpirvVariable& variable) {
-    const SpirvDecorations& of = decorations(variable.id);
+    const SpirvDecorations& of = decorations_of(module_, variable.id);
     const SpirvId type = module_.type(variable.type).element;
-    const SpirvDecorations& of_type = decorations(type);
+    const SpirvDecorations& of_type = decorations_of(module_, type);
     if (of.builtin >= 0) return;
     if (module_.type(type).kind != SpirvKind::structure || !of_type.is_block) {
       ShaderPort port{.name = of.name,
                       .location = of.location,
                       .component = of.component,
-                      .is_used = is_used(variable.id),
+                      .is_used = is_used(module_, variable.id),
                       .of = variable.id};
       push(std::move(port), type);
       return;
@@ -43,14 +63,13 @@ class Ports {
     int location = of.location;
     const SpirvType& block = module_.type(type);
     for (std::size_t i = 0; i < block.members.size(); ++i) {
-      static const SpirvDecorations none;
-      const SpirvDecorations& member = i < of_type.members.size() ? of_type.members[i] : none;
+      const SpirvDecorations& member = decorations_of(module_, type, i);
       if (member.builtin >= 0) continue;
       const bool is_ours = of_type.name.starts_with("gl_");
       ShaderPort port{.name = is_ours ? member.name : of_type.name + "." + member.name,
                       .location = member.location >= 0 ? member.location : location,
                       .component = member.component,
-                      .is_used = is_used(variable.id),
+                      .is_used = is_used(module_, variable.id),
                       .of = type,
                       .member = static_cast<int>(i)};
       push(std::move(port), block.members[i]);
@@ -83,19 +102,6 @@ class Ports {
     } else {
       for (std::uint32_t i = 0; i < type.count; ++i) add_numbers(type.element, to);
     }
-  }
-
-  bool is_used(SpirvId id) const {
-    for (const auto& [number, function] : module_.functions) {
-      for (const SpirvBlock& block : function.blocks) {
-        for (const SpirvInstruction& in : block.instructions) {
-          if (std::find(in.operands.begin(), in.operands.end(), id) != in.operands.end()) {
-            return true;
-          }
-        }
-      }
-    }
-    return false;
   }
 };
 
@@ -155,6 +161,7 @@ std::string named(const ShaderPort& port) {
 struct TypePair {
   const SpirvModule &ours, &theirs;
   bool of_block = false;
+  bool with_precision = false;
 
   bool is_same(SpirvId our, SpirvId their) const {
     const SpirvType &a = ours.type(our), &b = theirs.type(their);
@@ -165,18 +172,15 @@ struct TypePair {
       return false;
     }
     for (std::size_t i = 0; i < a.members.size(); ++i) {
-      if (name_of(ours, our, i) != name_of(theirs, their, i) ||
+      const SpirvDecorations &c = decorations_of(ours, our, i),
+                             &d = decorations_of(theirs, their, i);
+      if (c.name != d.name || (of_block && c.is_row_major != d.is_row_major) ||
+          (with_precision && c.is_relaxed != d.is_relaxed) ||
           !is_same(a.members[i], b.members[i])) {
         return false;
       }
     }
     return a.element == 0 || is_same(a.element, b.element);
-  }
-
-  static std::string name_of(const SpirvModule& module, SpirvId type, std::size_t member) {
-    const auto found = module.decorations.find(type);
-    if (found == module.decorations.end() || member >= found->second.members.size()) return {};
-    return found->second.members[member].name;
   }
 };
 
@@ -184,60 +188,112 @@ struct NamedVariable {
   std::string name{};  ///< of a block its own, not its instance's
   SpirvId type = 0;
   bool is_block = false;
+  SpirvId id = 0;
 };
 
 template <class IsWanted>
 std::vector<NamedVariable> variables_of(const SpirvModule& module, const IsWanted& is_wanted) {
-  const auto find = [&](SpirvId id) {
-    const auto found = module.decorations.find(id);
-    return found == module.decorations.end() ? nullptr : &found->second;
-  };
   std::vector<NamedVariable> made;
   for (const auto& [id, variable] : module.variables) {
     if (!is_wanted(variable.storage)) continue;
     const SpirvId type = module.type(variable.type).element;
     SpirvId inner = type;
     while (module.type(inner).kind == SpirvKind::array) inner = module.type(inner).element;
-    const SpirvDecorations *of_type = find(inner), *of = find(id);
-    const bool is_block = of_type != nullptr && of_type->is_block;
-    const SpirvDecorations* named = is_block ? of_type : of;
-    if (named != nullptr && !named->name.empty()) {
-      made.push_back({named->name, type, is_block});
-    }
+    const SpirvDecorations& of_type = decorations_of(module, inner);
+    const std::string& name = of_type.is_block ? of_type.name : decorations_of(module, id).name;
+    if (!name.empty()) made.push_back({name, type, of_type.is_block, id});
   }
   return made;
 }
 
-/// Variables of one name must be of one type.
-void check_types(const SpirvModule& vertex, const std::vector<NamedVariable>& ours,
-                 const SpirvModule& fragment, const std::vector<NamedVariable>& theirs) {
+/// Calls check(our, their) for variables of one name.
+template <class Check>
+void for_pairs(const std::vector<NamedVariable>& ours, const std::vector<NamedVariable>& theirs,
+               const Check& check) {
   for (const NamedVariable& our : ours) {
     if (our.name.starts_with("gl_")) continue;
     for (const NamedVariable& their : theirs) {
-      if (their.name != our.name) continue;
-      const TypePair types{vertex, fragment, our.is_block && their.is_block};
-      if (types.is_same(our.type, their.type)) continue;
-      throw ShaderError("'" + our.name +
-                        "' has another type in the vertex shader than in the fragment shader; "
-                        "they must be equal");
+      if (their.name == our.name) check(our, their);
     }
   }
 }
 
+[[noreturn]] void refuse_pair(const std::string& name, const char* what) {
+  throw ShaderError("'" + name + "' has another " + what +
+                    " in the vertex shader than in the fragment shader; they must be equal");
+}
+
+/// Variables of one name must be of one type; with ES, uniforms of one precision: those of 1.00 if
+/// both shaders use them.
 void check_uniforms(const SpirvModule& vertex, const SpirvModule& fragment) {
+  constexpr int kLastWithUnused = 100;
   const auto is_uniform = [](SpirvStorage storage) {
     return storage == SpirvStorage::uniform || storage == SpirvStorage::uniform_constant;
   };
-  check_types(vertex, variables_of(vertex, is_uniform), fragment,
-              variables_of(fragment, is_uniform));
+  const bool is_es = vertex.es_version != 0 && fragment.es_version != 0;
+  for_pairs(variables_of(vertex, is_uniform), variables_of(fragment, is_uniform),
+            [&](const NamedVariable& our, const NamedVariable& their) {
+              TypePair types{vertex, fragment, our.is_block && their.is_block};
+              if (!types.is_same(our.type, their.type)) refuse_pair(our.name, "type");
+              if (!is_es || (fragment.es_version <= kLastWithUnused &&
+                             !(is_used(vertex, our.id) && is_used(fragment, their.id)))) {
+                return;
+              }
+              types.with_precision = true;
+              if (decorations_of(vertex, our.id).is_relaxed !=
+                      decorations_of(fragment, their.id).is_relaxed ||
+                  !types.is_same(our.type, their.type)) {
+                refuse_pair(our.name, "precision");
+              }
+            });
 }
 
+bool is_invariant(const SpirvModule& module, SpirvBuiltin builtin) {
+  const auto is_it = [&](const SpirvDecorations& of) {
+    return of.builtin == static_cast<int>(builtin) && of.is_invariant;
+  };
+  return std::any_of(module.decorations.begin(), module.decorations.end(), [&](const auto& pair) {
+    const SpirvDecorations& of = pair.second;
+    return is_it(of) || std::any_of(of.members.begin(), of.members.end(), is_it);
+  });
+}
+
+/// Types as of uniforms; how they are interpolated up to GLSL 4.30 and with ES. What is invariant
+/// may differ: of `#pragma STDGL invariant(all)` the SPIR-V says nothing.
 void check_varyings(const SpirvModule& vertex, const SpirvModule& fragment) {
+  constexpr int kLastWithInterpolation = 430;
+  const bool has_interpolation =
+      fragment.es_version != 0 ||
+      (fragment.glsl_version != 0 && fragment.glsl_version <= kLastWithInterpolation);
   const auto outputs =
       variables_of(vertex, [](SpirvStorage storage) { return storage == SpirvStorage::output; });
   const auto inputs =
       variables_of(fragment, [](SpirvStorage storage) { return storage == SpirvStorage::input; });
-  check_types(vertex, outputs, fragment, inputs);
+  for_pairs(outputs, inputs, [&](const NamedVariable& our, const NamedVariable& their) {
+    if (!TypePair{vertex, fragment, our.is_block && their.is_block}.is_same(our.type, their.type)) {
+      refuse_pair(our.name, "type");
+    }
+    const SpirvDecorations& a = decorations_of(vertex, our.id);
+    const SpirvDecorations& b = decorations_of(fragment, their.id);
+    if (has_interpolation && (a.is_flat != b.is_flat || a.is_linear != b.is_linear)) {
+      refuse_pair(our.name, "interpolation");
+    }
+  });
+}
+
+/// With ES 1.00 gl_FragCoord and gl_PointCoord are invariant only if gl_Position and gl_PointSize
+/// are.
+void check_invariant_places(const SpirvModule& vertex, const SpirvModule& fragment) {
+  constexpr int kLastEsWithInvariant = 100;
+  if (fragment.es_version == 0 || fragment.es_version > kLastEsWithInvariant) return;
+  if (is_invariant(fragment, SpirvBuiltin::frag_coord) &&
+      !is_invariant(vertex, SpirvBuiltin::position)) {
+    throw ShaderError("gl_FragCoord is invariant, and gl_Position is not; both are, or none");
+  }
+  if (is_invariant(fragment, SpirvBuiltin::point_coord) &&
+      !is_invariant(vertex, SpirvBuiltin::point_size)) {
+    throw ShaderError("gl_PointCoord is invariant, and gl_PointSize is not; both are, or none");
+  }
 }
 
 /// Whether some instruction names gl_Position: by itself, or as a block's member.
@@ -258,13 +314,11 @@ bool uses_position(const SpirvModule& module) {
   };
   for (const auto& [id, variable] : module.variables) {
     if (variable.storage != SpirvStorage::output) continue;
-    const auto own = module.decorations.find(id);
-    const auto block = module.decorations.find(module.type(variable.type).element);
-    const bool is_it = own != module.decorations.end() && is_position(own->second);
-    const bool has_it =
-        block != module.decorations.end() &&
-        std::any_of(block->second.members.begin(), block->second.members.end(), is_position);
-    if (!is_it && !has_it) continue;
+    const SpirvDecorations& block = decorations_of(module, module.type(variable.type).element);
+    if (!is_position(decorations_of(module, id)) &&
+        std::none_of(block.members.begin(), block.members.end(), is_position)) {
+      continue;
+    }
     for (const auto& [number, function] : module.functions) {
       for (const SpirvBlock& in_block : function.blocks) {
         for (const SpirvInstruction& in : in_block.instructions) {
@@ -371,6 +425,7 @@ void link_shaders(UserShader& vertex, UserShader& fragment) {
     }
   }
   check_varyings(*vertex.module, *fragment.module);
+  check_invariant_places(*vertex.module, *fragment.module);
   for (ShaderPort& output : outputs) {
     if (output.location >= 0) continue;
     set_location(*vertex.module, output, free);

@@ -330,6 +330,14 @@ bool has_one_operand(SpirvOp op) {
 
 }  // namespace
 
+std::optional<std::uint32_t> fold_spirv_op(SpirvOp op, std::uint32_t a, std::uint32_t b) {
+  const std::optional<Mapped> one = mapped(op);
+  if (!one || one->op < ShaderOp::add_integers || op >= SpirvOp::derivative_x) return std::nullopt;
+  if (one->swaps) std::swap(a, b);
+  const std::uint32_t made = fold_shader_op(one->op, a, b, 0);
+  return one->turns ? ~made : made;
+}
+
 Scalars Lowering::numbers_result(Call& call, const SpirvInstruction& in, ShaderRegion& to) {
   const Words& w = in.operands;
   Scalars a = value(call, word(w, 0));

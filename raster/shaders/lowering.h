@@ -22,6 +22,10 @@ inline constexpr std::size_t kMostNodes = std::size_t{1} << 20;
 inline constexpr std::size_t kMostWork = std::size_t{1} << 22;
 inline constexpr int kDeepestNodes = 200, kDeepestCalls = 64;
 
+/// What an instruction makes of whole numbers or booleans; nothing of others. `b`: of those that
+/// have two operands.
+std::optional<std::uint32_t> fold_spirv_op(SpirvOp op, std::uint32_t a, std::uint32_t b);
+
 inline bool is_uniform(SpirvStorage storage) {
   return storage == SpirvStorage::uniform_constant || storage == SpirvStorage::uniform ||
          storage == SpirvStorage::push_constant;

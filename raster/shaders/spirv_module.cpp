@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 #include <set>
 #include <utility>
+
+#include "raster/shaders/lowering.h"
 
 namespace softfocus {
 namespace {
@@ -339,12 +342,45 @@ class Reader {
         if (words.size() != scalars_of(in.type))
           damaged_words("a constant has not its type's parts");
         break;
-      case spec_constant_op:
-        refuse("constants that are computed of specialised ones are not supported");
+      case spec_constant_op: words = computed_constant(in); break;
       default: return false;
     }
     module_.constants[in.result] = {in.type, std::move(words)};
     return true;
+  }
+
+  /// Of whole numbers and booleans: shaders have no others.
+  std::vector<std::uint32_t> computed_constant(const SpirvInstruction& in) const {
+    const Operands& w = in.operands;
+    const auto op = static_cast<SpirvOp>(word(w, 0));
+    const SpirvConstant& a = constant_of(word(w, 1));
+    std::vector<std::uint32_t> words;
+    if (op == composite_extract) {
+      const std::uint32_t scalars = scalars_of(in.type);
+      const std::uint64_t first = std::uint64_t{scalars} * word(w, 2);
+      if (w.size() != 3 || module_.type(a.type).element != in.type ||
+          first + scalars > a.words.size()) {
+        refuse("constants that are parts of specialised ones are not supported");
+      }
+      const auto at = a.words.begin() + static_cast<std::ptrdiff_t>(first);
+      return {at, at + scalars};
+    }
+    const std::size_t last = op == select ? 3 : 2;
+    const auto at = [&](std::size_t operand, std::size_t i) {
+      if (operand >= w.size()) return 0u;
+      const std::vector<std::uint32_t>& given = constant_of(w[operand]).words;
+      return given.size() == 1 ? given[0] : i < given.size() ? given[i] : 0u;
+    };
+    for (std::size_t i = 0; i < scalars_of(in.type); ++i) {
+      const auto made = op == select ? std::optional{at(1, i) != 0 ? at(2, i) : at(last, i)}
+                                     : fold_spirv_op(op, at(1, i), at(last, i));
+      if (!made) {
+        refuse("constants that instruction " + std::to_string(word(w, 0)) +
+               " computes of specialised ones are not supported");
+      }
+      words.push_back(*made);
+    }
+    return words;
   }
 
   void take_other(const SpirvInstruction& in) {
@@ -369,8 +405,10 @@ class Reader {
       case variable: module_.variables[in.result] = variable_of(in); break;
       case SpirvOp::function: begin_function(in); break;
       case source: {
-        constexpr std::uint32_t kGlsl = 2;
-        if (word(w, 0) == kGlsl) module_.glsl_version = static_cast<int>(word(w, 1) & 0xFFF);
+        constexpr std::uint32_t kEs = 1, kGlsl = 2;
+        const int version = static_cast<int>(word(w, 1) & 0xFFF);
+        if (word(w, 0) == kEs) module_.es_version = version;
+        if (word(w, 0) == kGlsl) module_.glsl_version = version;
         break;
       }
       case nop:
@@ -429,6 +467,7 @@ class Reader {
     const auto number = [&] { return static_cast<int>(std::min(word(w, 1), kMostScalars)); };
     switch (static_cast<SpirvDecoration>(word(w, 0))) {
       using enum SpirvDecoration;
+      case relaxed_precision: to.is_relaxed = true; break;
       case spec_id: to.constant = number(); break;
       case block: to.is_block = true; break;
       case row_major: to.is_row_major = true; break;
@@ -437,6 +476,7 @@ class Reader {
       case builtin: to.builtin = number(); break;
       case no_perspective: to.is_linear = true; break;
       case flat: to.is_flat = true; break;
+      case invariant: to.is_invariant = true; break;
       case location: to.location = number(); break;
       case component: to.component = number(); break;
       case index: to.index = number(); break;

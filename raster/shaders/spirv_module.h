@@ -72,6 +72,7 @@ struct SpirvDecorations {
   int offset = -1, array_stride = -1, matrix_stride = -1;
   int constant = -1;  ///< SpecId
   bool is_flat = false, is_linear = false, is_block = false, is_row_major = false;
+  bool is_relaxed = false, is_invariant = false;  ///< what linking alone asks for
   std::vector<SpirvDecorations> members{};
 };
 
@@ -111,6 +112,7 @@ struct SpirvModule {
   SpirvId main = 0;
   bool origin_is_upper_left = false, depth_replacing = false;
   int glsl_version = 0;  ///< 110 to 460; of ES and other languages 0
+  int es_version = 0;    ///< 100 to 320; of other languages 0
   std::map<SpirvId, SpirvType> types{};
   std::map<SpirvId, SpirvConstant> constants{};
   std::map<SpirvId, SpirvVariable> variables{};  ///< of the module

@@ -206,6 +206,7 @@ enum class SpirvStorage : std::uint8_t {
 enum class SpirvDim : std::uint8_t { one = 0, two = 1, three = 2, cube = 3, rectangle = 4 };
 
 enum class SpirvDecoration : std::uint16_t {
+  relaxed_precision = 0,
   spec_id = 1,
   block = 2,
   row_major = 4,
@@ -215,6 +216,7 @@ enum class SpirvDecoration : std::uint16_t {
   builtin = 11,
   no_perspective = 13,
   flat = 14,
+  invariant = 18,
   location = 30,
   component = 31,
   index = 32,

@@ -31,20 +31,15 @@ PASS_THROUGH = ("#if __VERSION__ >= 130\nin vec4 piglit_vertex;\n#else\n"
                 "attribute vec4 piglit_vertex;\n#endif\n"
                 "void main() { gl_Position = piglit_vertex; }\n")
 
-PRECISION = "a uniform's precision means nothing: all is binary32"
 DENORMALS = "denormals are kept; the case expects 0 for 2^-149"
-INVARIANT = "invariant means nothing: all is"
 CONSTANTS = "the compiler folds constants in its own way"
 
 # Parts of the paths of cases that fail, and why.
 KNOWN = {
     "fs-underflow-": DENORMALS,
-    "mismatched-uniform-precision": PRECISION,
-    "coord-invariant": INVARIANT,
     "const-builtin-degrees": CONSTANTS,
     "glsl-const-folding-01": CONSTANTS,
     "-inline-explosion": "2^64 calls; functions are inlined, 64 deep",
-    "interface-blocks-member-qualifier-mismatch": "the fragment shader's interpolation counts",
     "vs-out-conversion-int-to-float-vec4-index": "the compiler takes an out parameter's index "
                                                  "after the call",
 }

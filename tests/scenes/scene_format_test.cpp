@@ -112,8 +112,8 @@ std::vector<double> numbers_of(const Scene& scene) {
   add(camera.fov_y_degrees, camera.near_m, camera.far_m, camera.orbit_degrees_per_frame,
       camera.shutter_frames);
   const SceneLens& lens = scene.lens;
-  add(lens.lens.focal_length_mm, lens.lens.f_number, lens.lens.focus_m, lens.easing, lens.coc_scale,
-      lens.max_coc_px_at_1024);
+  for (const LensNumber& number : kLensNumbers) add(lens.lens.*number.place);
+  add(lens.easing, lens.coc_scale, lens.max_coc_px_at_1024);
   for (const Light& light : scene.lights) {
     add_vector(light.colour);
     add(light.kind, light.shadows, light.shadow_darkness, light.terminator, light.radius_m,

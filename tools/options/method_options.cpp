@@ -5,6 +5,7 @@
 #include <string>
 
 #include "dof/parameters.h"
+#include "dof/pipelines/pipeline.h"
 #include "raster/numbers/parameter_text.h"
 #include "scenes/filtered_views/filtered_views.h"
 #include "scenes/load/pipeline_file.h"
@@ -55,7 +56,87 @@ void check_warped_views(const CLI::App& parser, const LensViewMethod& method) {
       "the method " + std::string{method.name} + " does without; give --method accumulation");
 }
 
+/// Of a command by name, with its dashes; empty of what is none.
+std::vector<std::string> option_names(const CLI::App& program, const std::string& command) {
+  std::vector<std::string> names;
+  const CommandDescription all = describe(program, "");
+  const bool is_command =
+      std::any_of(all.commands.begin(), all.commands.end(),
+                  [&](const CommandDescription& one) { return last_word(one.name) == command; });
+  if (!is_command) return names;
+  for (const OptionGroup& group : describe(program, command).groups) {
+    for (const OptionDescription& option : group.options) {
+      names.insert(names.end(), option.names.begin(), option.names.end());
+    }
+  }
+  return names;
+}
+
+/// A list of methods with a parameter set for each that has it; nothing if none has.
+std::optional<std::string> with_parameter(const std::string& list, const std::string& name,
+                                          const std::string& value) {
+  std::string made;
+  bool is_taken = false;
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    const std::string one = list.substr(begin, end - begin);
+    begin = end + 1;
+    made += (made.empty() ? "" : ",") + one;
+    if (!is_pipeline_name(one)) continue;
+    try {
+      const std::vector<PipelineParameter>& all = pipeline_method(one)->pipeline->parameters;
+      if (std::any_of(all.begin(), all.end(),
+                      [&](const PipelineParameter& of) { return of.name == name; })) {
+        made += ":" + name + "=" + value;
+        is_taken = true;
+      }
+    } catch (const std::runtime_error&) {
+      return {};  // the option will say it
+    }
+  }
+  return is_taken ? std::optional{made} : std::nullopt;
+}
+
 }  // namespace
+
+std::vector<std::string> with_parameters_joined(const CLI::App& program,
+                                                std::vector<std::string> arguments) {
+  const std::string command = arguments.empty() ? "" : arguments.front();
+  std::vector<std::string> known;
+  for (std::size_t i = 1; i < arguments.size() && arguments[i] != "--"; ++i) {
+    const std::string& word = arguments[i];
+    const std::size_t sign = std::min(word.find('='), word.size());
+    const std::string option = word.substr(0, sign);
+    if (!option.starts_with("--")) continue;
+    if (known.empty()) known = option_names(program, command);
+    if (known.empty()) break;
+    if (std::find(known.begin(), known.end(), option) != known.end()) continue;
+    const bool is_joined = sign < word.size();
+    if (!is_joined && i + 1 == arguments.size()) break;
+    const std::string name = option.substr(2);
+    const std::string value = is_joined ? word.substr(sign + 1) : arguments[i + 1];
+    std::vector<std::string> rest = arguments;
+    const auto at = rest.begin() + static_cast<std::ptrdiff_t>(i);
+    rest.erase(at, at + (is_joined ? 1 : 2));
+    bool is_taken = false;
+    for (std::size_t j = 1; j < rest.size(); ++j) {
+      for (const std::string of : {"--method", "--methods", "--pipeline"}) {
+        const bool is_before = rest[j - 1] == of;
+        if (!is_before && !rest[j].starts_with(of + "=")) continue;
+        const std::size_t begin = is_before ? 0 : of.size() + 1;
+        const auto joined = with_parameter(rest[j].substr(begin), name, value);
+        if (!joined) continue;
+        is_taken = true;
+        if (command != "apply") rest[j].replace(begin, rest[j].npos, *joined);
+      }
+    }
+    if (!is_taken) continue;
+    if (command == "apply") rest.insert(rest.begin() + 1, {"--set", name + "=" + value});
+    arguments = std::move(rest);
+    --i;
+  }
+  return arguments;
+}
 
 std::vector<std::string> all_methods() {
   std::vector<std::string> names = names_in(methods());

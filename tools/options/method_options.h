@@ -43,6 +43,12 @@ MethodChoice find_named_method(const std::string& option, const std::string& nam
 std::vector<std::string> listed_methods(const std::string& text,
                                         const std::vector<std::string>& known);
 
+/// Arguments in which `--NAME NUMBER`, an option that the command has not, but a parameter of a
+/// pipeline that --method, --methods or --pipeline names, is said as that option says it:
+/// "FILE.toml:NAME=NUMBER"; with `apply`, `--set NAME=NUMBER`.
+std::vector<std::string> with_parameters_joined(const CLI::App& program,
+                                                std::vector<std::string> arguments);
+
 /// Adds --method for filters; `method` holds the default.
 void add_method_option(CLI::App& parser, const Method*& method);
 

@@ -11,6 +11,7 @@
 #include <charconv>
 
 #include "raster/shaders/glsl/glsl_text.h"
+#include "raster/shaders/spirv_module.h"
 
 namespace softfocus {
 namespace {
@@ -204,6 +205,14 @@ CompiledGlsl compiled(const GlslSource& source, GlslText text, bool is_relaxed) 
   add_messages(logger.getAllMessages(), source.name, messages);
   if (out.words.size() < 5) refuse(messages, text, source.name);
   out.words[1] = kSpirv10;
+  try {
+    read_spirv(out.words);
+  } catch (const ShaderError& error) {
+    const std::string why = error.what();
+    const std::size_t line = why.find(':') + 1;  // "FILE:LINE: why"
+    if (line != 0 && std::isdigit(static_cast<unsigned char>(why[line])) != 0) throw;
+    refuse_at_word(text.text, source.name, why);
+  }
   out.convention = text.convention;
   if (!text.is_hlsl) out.text = text_for_drivers(text);
   out.files = std::move(text.files);

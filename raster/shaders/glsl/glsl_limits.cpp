@@ -1,6 +1,7 @@
 // What glslang has no stack, memory or time for, refused before it is asked.
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <unordered_map>
 
@@ -159,6 +160,21 @@ void check_limits(std::string_view text, const std::string& name) {
   if (sum.compared * largest_value(macros, tokens, places) > kMostCompared) {
     throw ShaderError(name + ": too many comparisons for arrays or structures of that size");
   }
+}
+
+void refuse_at_word(std::string_view text, const std::string& name, const std::string& why) {
+  constexpr std::array<std::string_view, 11> kBegins{
+      "image1D", "image2D", "image3D", "imageCube",     "iimage",          "uimage",
+      "RW",      "subpass", "Subpass", "samplerBuffer", "StructuredBuffer"};
+  std::vector<GlslToken> tokens = glsl_tokens(text);
+  const Places places(tokens, name);
+  for (const GlslToken& token : tokens) {
+    const bool begins = std::any_of(kBegins.begin(), kBegins.end(), [&](std::string_view begin) {
+      return token.text.starts_with(begin);
+    });
+    if (begins || token.text == "buffer" || token.text == "shared") places.refuse(token, why);
+  }
+  throw ShaderError(name + ": " + why);
 }
 
 }  // namespace softfocus

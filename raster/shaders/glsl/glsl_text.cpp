@@ -358,7 +358,10 @@ bool is_vulkan(std::span<const GlslToken> tokens) {
   for (std::size_t i = 0; i + 2 < tokens.size(); ++i) {
     if (tokens[i].text != "layout") continue;
     for (++i; i + 1 < tokens.size() && tokens[i].text != ")"; ++i) {
-      if (tokens[i].text == "push_constant") return true;
+      if (tokens[i].text == "push_constant" || tokens[i].text == "constant_id" ||
+          tokens[i].text == "input_attachment_index") {
+        return true;
+      }
       if (tokens[i].text == "set" && tokens[i + 1].text == "=") return true;
     }
   }
@@ -518,7 +521,7 @@ GlslText hlsl_text(const GlslSource& source, const GlslReader& read) {
 }  // namespace
 
 GlslText glsl_text(const GlslSource& source, const GlslReader& read, bool raise, int least) {
-  if (is_hlsl(source.name)) return hlsl_text(source, read);
+  if (is_hlsl(source)) return hlsl_text(source, read);
   GlslText out;
   std::string text = cleaned(source.text, source.name);
   Includes includes(read, out.files);

@@ -66,6 +66,11 @@ GlslText glsl_text(const GlslSource& source, const GlslReader& read, bool raise 
 /// grow without end, expressions and structures too deep. `text`: all that a compiler is given.
 void check_limits(std::string_view text, const std::string& name);
 
+/// Throws ShaderError for what SPIR-V gives no line for: that of the first word which images that
+/// are written, buffers and their kin are declared with, or of the file alone.
+[[noreturn]] void refuse_at_word(std::string_view text, const std::string& name,
+                                 const std::string& why);
+
 /// What a convention declares for a shader that uses it and does not declare it itself.
 struct GlslSurroundings {
   std::string before{}, after{};
@@ -73,8 +78,8 @@ struct GlslSurroundings {
 GlslSurroundings glsl_surroundings(GlslConvention convention, const GlslSource& source,
                                    std::span<const GlslToken> tokens, const GlslVersion& version);
 
-/// A file of that name is HLSL.
-inline bool is_hlsl(const std::string& name) { return name.ends_with(".hlsl"); }
+/// By a file's name, or by the semantics of Direct3D 10 in a text without a #version.
+bool is_hlsl(const GlslSource& source);
 
 /// What HLSL of D3D9 needs before it: samplers with their textures, tex2D() and its kin.
 std::string hlsl_surroundings(std::span<const GlslToken> tokens);

@@ -23,6 +23,21 @@ constexpr std::array<std::string_view, 16> kOld{
 
 }  // namespace
 
+bool is_hlsl(const GlslSource& source) {
+  if (source.name.ends_with(".hlsl")) return true;
+  if (source.convention != GlslConvention::recognised) return false;
+  const std::vector<GlslToken> tokens = glsl_tokens(source.text);
+  const auto is_semantic = [](const GlslToken& token) {
+    std::string word{token.text};
+    std::transform(word.begin(), word.end(), word.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    return word.starts_with("SV_TARGET") || word == "SV_POSITION";
+  };
+  return std::any_of(tokens.begin(), tokens.end(), is_semantic) &&
+         std::none_of(tokens.begin(), tokens.end(),
+                      [](const GlslToken& token) { return token.text == "version"; });
+}
+
 std::string hlsl_surroundings(std::span<const GlslToken> tokens) {
   const bool is_old = std::any_of(tokens.begin(), tokens.end(), [](const GlslToken& token) {
     return is_any_of(token.text, kOld);

@@ -214,6 +214,17 @@ TEST_CASE("an error names the user's file and line") {
   CHECK(error.ends_with("(taken as shadertoy)"));
 }
 
+TEST_CASE("what SPIR-V has no line for is refused with that of the first word for it") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const std::string main = "void main() {}\n";
+  CHECK(error_of_text("#version 430\n\nlayout(rgba8) uniform image2D i;\n"
+                      "void main() { imageStore(i, ivec2(0), vec4(0)); }\n") ==
+        "mine.frag:3: images that a shader writes are not supported");
+  CHECK(error_of_text("#version 430\nlayout(std430) buffer B { float x[]; };\nout vec4 o;\n"
+                      "void main() { o = vec4(x[0]); }\n")
+            .starts_with("mine.frag:2: "));
+}
+
 TEST_CASE("an include is read beside the file that includes it, and errors name it") {
   if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
   struct Dialect {

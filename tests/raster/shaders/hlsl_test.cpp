@@ -144,6 +144,14 @@ TEST_CASE("HLSL of D3D9 has its samplers with their textures") {
   }
 }
 
+TEST_CASE("HLSL is recognised by its semantics, whatever its file's name") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const std::string text = "float4 main(float4 at : SV_POSITION) : SV_TARGET { return at; }\n";
+  const UserShader shader = shader_of("mine.frag", text);
+  CHECK(load_texel(drawn_by(shader, shader.uniforms.words, noise()), 2, 3).x == 2.5f);
+  CHECK_THROWS_AS(shader_of("mine.frag", "#version 330\n" + text), ShaderError);
+}
+
 TEST_CASE("an error of HLSL names its line, and what glslang's stack cannot hold is refused") {
   if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
   CHECK(
@@ -173,6 +181,31 @@ TEST_CASE("an error of HLSL names its line, and what glslang's stack cannot hold
   flat += "};\nfloat4 main() : SV_Target { float x = 1;";
   for (int i = 0; i < 200; ++i) flat += " if (x > 3) { x = -(x + 4); } else { x += 1; }";
   CHECK(error_of_hlsl(flat + " return x + kPoints[0].x; }") == "");
+}
+
+TEST_CASE(
+    "a constant that is computed of specialised ones has the value of what they are preset to") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const auto text = [](const std::string& value) {
+    return "#version 450\nlayout(constant_id = 0) const int n = 5;\n"
+           "layout(constant_id = 1) const bool on = true;\n"
+           "layout(constant_id = 2) const uint u = 0xFFFFFFF0u;\n"
+           "const int sides = (n * 3 - 1) / 4;\nconst ivec3 v = ivec3(n, -n, n << 2) % 4;\n"
+           "layout(location = 0) out vec4 c;\n"
+           "void main() {\n  float all[sides];\n  for (int i = 0; i < all.length(); ++i) all[i] = "
+           "1.0;\n"
+           "  c = vec4(" +
+           value + ");\n}\n";
+  };
+  for (const auto& [value, is] :
+       {std::pair{"all.length(), v.z, on && n > 4 ? 7 : 8, n == 5 ? 1 : 2",
+                  glm::vec4{3.0f, 0.0f, 7.0f, 1.0f}},
+        std::pair{"u >> 28, u / 16u > 3u ? 1 : 0, -n, ~n", glm::vec4{15.0f, 1.0f, -5.0f, -6.0f}}}) {
+    CAPTURE(value);
+    const UserShader shader = shader_of("mine.frag", text(value));
+    const Image image = drawn_by(shader, shader.uniforms.words, noise());
+    CHECK(load_texel(image, 0, 0) == is);
+  }
 }
 
 TEST_CASE("a module as of WGSL: a wrapped uniform, a sampler for itself, an entry point's name") {

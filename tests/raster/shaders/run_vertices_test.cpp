@@ -215,6 +215,60 @@ void main() { gl_FragColor = gl_Color + gl_TexCoord[0]; })",
   CHECK(std::bit_cast<std::array<float, 4>>(values) == std::array{0.0f, 0.5f, 1.0f, 1.0f});
 }
 
+TEST_CASE(
+    "what the version wants equal has to be: precision, interpolation, gl_FragCoord's invariance") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  struct Stages {
+    std::string version, vertex, fragment, vertex_use = "0.0", fragment_use = "0.0";
+  };
+  const auto error = [](const Stages& of) {
+    const bool is_old = of.version == "100" || of.version == "120";
+    const std::string head = "#version " + of.version + "\n";
+    UserShader vertex = shader_of(
+        head + of.vertex + "\nvoid main() { gl_Position = vec4(" + of.vertex_use + "); }\n",
+        ShaderStage::vertex);
+    UserShader fragment = shader_of(
+        head + of.fragment + (is_old ? "\n" : "\nout mediump vec4 result;\n") + "void main() { " +
+            (is_old ? "gl_FragColor" : "result") + " = vec4(" + of.fragment_use + "); }\n",
+        ShaderStage::fragment);
+    try {
+      link_shaders(vertex, fragment);
+    } catch (const ShaderError& caught) {
+      return std::string{caught.what()};
+    }
+    return std::string{};
+  };
+  const auto other = [](const std::string& what) {
+    return "'v' has another " + what +
+           " in the vertex shader than in the fragment shader; they must be equal";
+  };
+  const std::string high = "uniform highp float v;", medium = "uniform mediump float v;";
+  CHECK(error({"100", high, medium, "v", "v"}) == other("precision"));
+  CHECK(error({"100", high, medium, "v"}).empty());
+  CHECK(error({"100", high, high, "v", "v"}).empty());
+  CHECK(error({"300 es", high, medium}) == other("precision"));
+  CHECK(error({"300 es", "struct S { highp vec2 a; }; uniform S v;",
+               "struct S { mediump vec2 a; }; uniform S v;"}) == other("precision"));
+  CHECK(error({"330", high, medium, "v", "v"}).empty());
+
+  const std::string flat = "flat out float v;", smooth = "in float v;";
+  CHECK(error({"330", flat, smooth, "v = 1.0", "v"}) == other("interpolation"));
+  CHECK(error({"330", "noperspective out float v;", "smooth " + smooth, "v = 1.0", "v"}) ==
+        other("interpolation"));
+  CHECK(error({"330", flat, "flat " + smooth, "v = 1.0", "v"}).empty());
+  CHECK(error({"440", flat, smooth, "v = 1.0", "v"}).empty());
+  CHECK(error({"300 es", "flat out highp float v;", "in highp float v;", "v = 1.0", "v"}) ==
+        other("interpolation"));
+  CHECK(
+      error({"300 es", "smooth out highp float v;", "centroid in mediump float v;", "v = 1.0", "v"})
+          .empty());
+
+  CHECK(error({"100", "", "invariant gl_FragCoord;", "0.0", "gl_FragCoord.x"}) ==
+        "gl_FragCoord is invariant, and gl_Position is not; both are, or none");
+  CHECK(error({"100", "invariant gl_Position;", "invariant gl_FragCoord;", "0.0", "gl_FragCoord.x"})
+            .empty());
+}
+
 TEST_CASE("errors of linking name the varying that does not fit") {
   if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
   const std::string vertex_text = R"(#version 150

@@ -1,4 +1,5 @@
 #include "tests/support/cli_render.h"
+#include "tools/options/method_options.h"
 
 using namespace softfocus;
 
@@ -167,14 +168,7 @@ TEST_CASE("scenes, methods and profiles are listed a line each, by name") {
   lists("scenes", {"bright-edges", "canopy", "clutter", "crossing", "cube-room", "dunes", "figures",
                    "foliage", "glass", "grazing-floor", "interior", "lattice", "near-fence",
                    "night-lights", "portrait", "sphere-world", "windmill", "random:SEED"});
-  // clang-format off
-  lists("methods", {"pinhole", "two-pass", "two-pass-single", "one-pass", "importance-ordered",
-                    "scatter", "scatter-sorted", "scatter-aperture", "layers", "fields",
-                    "ray-distribution-buffer", "pentagonal", "hexagonal", "diffusion", "generalised-diffusion",
-                    "anisotropic-diffusion", "ring-bucket", "circular-1", "circular-2",
-                    "disc-layers", "layered", "object-identification", "post-process", "mipmap",
-                    "accumulation", "filtered-views", "warped-accumulation", "ray-traced", "surface-splatting", "auto"});
-  // clang-format on
+  lists("methods", all_methods());
   lists("profiles", {"ieee", "d3d11", "llvmpipe", "llvmpipe-sse41", "softpipe", "swiftshader"});
 }
 

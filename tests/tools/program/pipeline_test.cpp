@@ -57,7 +57,7 @@ TEST_CASE("render and refocus by a pipeline of two-pass's GLSL give two-pass's p
   CHECK(texels(a) == texels(b));
 }
 
-TEST_CASE("apply --pipeline: a parameter by --set, and by the method's name") {
+TEST_CASE("a pipeline's parameter by --set, by the method's name, and as an option") {
   if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
   const TemporaryDirectory directory;
   const std::string pipeline = write_brighter(directory), sharp = directory.file("sharp.npy");
@@ -69,9 +69,26 @@ TEST_CASE("apply --pipeline: a parameter by --set, and by the method's name") {
   CHECK(run_program({"apply", sharp, "--pipeline", pipeline, "--set", "gain=2", "-o", twice})
             .status == 0);
   CHECK(texels(twice) != texels(sharp));
-  CHECK(run_program({"refocus", sharp, "--method", pipeline + ":gain=2", "-o", refocused}).status ==
-        0);
-  CHECK(texels(refocused) == texels(twice));
+  for (const Words& words :
+       {Words{"refocus", sharp, "--method", pipeline + ":gain=2"},
+        Words{"refocus", sharp, "--method", pipeline, "--gain", "2"},
+        Words{"refocus", sharp, "--gain=2", "--method=" + pipeline},
+        Words{"refocus", sharp, "--method", pipeline + ":gain=1", "--gain", "2"},
+        Words{"apply", sharp, "--gain", "2", "--pipeline", pipeline}}) {
+    Words whole = words;
+    whole.insert(whole.end(), {"-o", refocused});
+    CAPTURE(words.back());
+    CHECK(run_program(whole).status == 0);
+    CHECK(texels(refocused) == texels(twice));
+  }
+  for (const auto& [words, named] :
+       {std::pair{Words{"--gain", "9"}, Words{"gain=9", "from 0 to 8"}},
+        std::pair{Words{"--gian", "2"}, Words{"unknown option '--gian'"}},
+        std::pair{Words{"--gain"}, Words{"unknown option '--gain'"}}}) {
+    Words whole{"refocus", sharp, "--method", pipeline, "-o", directory.file("no.npy")};
+    whole.insert(whole.end(), words.begin(), words.end());
+    check_refused(directory, whole, 2, named);
+  }
 }
 
 TEST_CASE("a pipeline that cannot be is one line, and its files are no outputs") {
