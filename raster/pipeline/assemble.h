@@ -30,7 +30,7 @@ inline std::array<std::size_t, 3> fan_triangle(std::size_t i, ProvokingVertex pr
 template <std::size_t N, class Add>
 void to_window_triangles(const std::array<VertexOutput<N>, 3>& corners,
                          const std::array<Interpolation, N>& kinds, ProvokingVertex provoking,
-                         int width, int height, const Profile& profile, const Add& add) {
+                         const Rectangle& viewport, const Profile& profile, const Add& add) {
   unsigned outside_any = 0;
   unsigned outside_all = ~0u;
   for (const VertexOutput<N>& corner : corners) {
@@ -39,11 +39,15 @@ void to_window_triangles(const std::array<VertexOutput<N>, 3>& corners,
     outside_all &= code;
   }
   if (outside_all != 0 || (outside_any & kNotFinite) != 0) return;
+  const auto in_window = [&](const glm::vec4& position, Contraction contraction) {
+    return to_window(position, viewport.x_end - viewport.x_begin, viewport.y_end - viewport.y_begin,
+                     contraction, viewport.x_begin, viewport.y_begin);
+  };
   std::array<WindowVertex, 3> window{};
   std::array<Varyings<N>, 3> varyings{};
   if (outside_any == 0) {
     for (std::size_t i = 0; i < 3; ++i) {
-      window[i] = to_window(corners[i].position, width, height, profile.viewport);
+      window[i] = in_window(corners[i].position, profile.viewport);
       varyings[i] = corners[i].varyings;
     }
     add(window, varyings);
@@ -66,8 +70,8 @@ void to_window_triangles(const std::array<VertexOutput<N>, 3>& corners,
     const auto corner_numbers = fan_triangle(i, provoking);
     for (std::size_t k = 0; k < 3; ++k) {
       const ClipVertex& corner = polygon.vertices[corner_numbers[k]];
-      window[k] = to_window(corner.position, width, height,
-                            corner.is_new ? Contraction::unfused : profile.viewport);
+      window[k] =
+          in_window(corner.position, corner.is_new ? Contraction::unfused : profile.viewport);
       std::copy_n(corner.varyings.begin(), N, varyings[k].begin());
     }
     add(window, varyings);

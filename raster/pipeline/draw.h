@@ -84,7 +84,7 @@ void assemble_batch(const Draw& draw, Chunk<N>& chunk, std::size_t begin, std::s
     for (std::size_t i = 0; i < 3; ++i) corners[i] = draw.vertices[draw.indices[3 * t + i]];
     to_window_triangles(
         corners, decltype(draw.fragment_stage)::kInterpolation, draw.state.provoking_vertex,
-        draw.width, draw.height, draw.profile,
+        {0, 0, draw.width, draw.height}, draw.profile,
         [&](const std::array<WindowVertex, 3>& window, const std::array<Varyings<N>, 3>& varyings) {
           add_triangle(draw, chunk, window, varyings, cull_unsnapped);
         });

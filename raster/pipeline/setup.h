@@ -24,16 +24,18 @@ struct WindowVertex {
   float inverse_w;
 };
 
-/// In this order: r = 1 / w; ndc = (x r, y r, z r); x_window = ndc.x * (width/2) + width/2,
-/// likewise y; depth = ndc.z * 0.5 + 0.5. If fused, a product and its sum are rounded once. w = 0
-/// gives infinities and NaN.
+/// In this order: r = 1 / w; ndc = (x r, y r, z r); x_window = ndc.x * (width/2) + (width/2 + x),
+/// likewise y, (x, y) the viewport's corner; depth = ndc.z * 0.5 + 0.5. If fused, a product and its
+/// sum are rounded once. w = 0 gives infinities and NaN.
 inline WindowVertex to_window(const glm::vec4& position, int width, int height,
-                              Contraction contraction) {
+                              Contraction contraction, int x = 0, int y = 0) {
   const float inverse_w = 1.0f / position.w;
   const float half_width = static_cast<float>(width) * 0.5f;
   const float half_height = static_cast<float>(height) * 0.5f;
-  return {multiply_add(position.x * inverse_w, half_width, half_width, contraction),
-          multiply_add(position.y * inverse_w, half_height, half_height, contraction),
+  const float middle_x = half_width + static_cast<float>(x);
+  const float middle_y = half_height + static_cast<float>(y);
+  return {multiply_add(position.x * inverse_w, half_width, middle_x, contraction),
+          multiply_add(position.y * inverse_w, half_height, middle_y, contraction),
           multiply_add(position.z * inverse_w, 0.5f, 0.5f, contraction), inverse_w};
 }
 

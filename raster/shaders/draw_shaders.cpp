@@ -57,7 +57,7 @@ struct ShadersRecorded {
   RenderTargets targets;
   Profile profile;
   DrawState state;
-  Rectangle clip;
+  Rectangle clip, viewport;
   int width, height;
   std::span<const std::uint32_t> indices;
   ShaderDraw draw;
@@ -105,6 +105,8 @@ struct ShadersRecorded {
         chunks(chunk_count) {
     const Rectangle target = target_area(targets);
     clip = state.scissor ? intersection(target, *state.scissor) : target;
+    viewport = draw.viewport.value_or(target);
+    if (draw.viewport) clip = intersection(clip, viewport);
     width = target.x_end;
     height = target.y_end;
     if (draw.texel.most_w) interpolated.push_back(~std::size_t{0});
@@ -196,7 +198,7 @@ void assemble_triangle(const ShadersRecorded& draw, ShaderChunk& chunk, std::siz
   using Window = std::array<WindowVertex, 3>;
   const auto each = [&](std::size_t group, const auto& add) {
     to_window_triangles(corners_of(draw, triangle, group), draw.kinds[group],
-                        draw.state.provoking_vertex, draw.width, draw.height, draw.profile, add);
+                        draw.state.provoking_vertex, draw.viewport, draw.profile, add);
   };
   const std::size_t before = chunk.first.triangles.size();
   std::array<bool, ClipPolygon{}.vertices.size()> is_drawn{};

@@ -42,6 +42,7 @@ struct ShaderDraw {
   std::vector<VertexAttribute> attributes{};  ///< others are 0, 0, 0, 1
   std::vector<ShaderTexture> vertex_textures{}, fragment_textures{};
   ShaderClipSpace clip_space = ShaderClipSpace::y_up;
+  std::optional<Rectangle> viewport{};  ///< in the picture; may reach beyond it; none: all of it
   ShaderTexel texel{};
   std::uint64_t budget = std::uint64_t{1} << 24;  ///< as ShaderPass has it
   int lanes = 0;                                  ///< likewise

@@ -72,6 +72,7 @@ struct Varying {
     look(in.a);
     look(in.b);
     look(in.c);
+    look(in.d);
     if (in.op != sample) return any;
     const ShaderSample& of = tree.samples[in.place];
     for (const ShaderValue value : of.at) look(value);
@@ -223,8 +224,8 @@ class Emitter {
   }
 
   ShaderStep& put_step(std::uint8_t op, ShaderRegister to = {}, ShaderRegister a = {},
-                       ShaderRegister b = {}, ShaderRegister c = {}) {
-    to_.steps.push_back({.op = op, .to = to, .a = a, .b = b, .c = c});
+                       ShaderRegister b = {}, ShaderRegister c = {}, ShaderRegister d = {}) {
+    to_.steps.push_back({.op = op, .to = to, .a = a, .b = b, .c = c, .d = d});
     to_.steps.back().line = line_;
     return to_.steps.back();
   }
@@ -392,7 +393,7 @@ class Emitter {
         step.stride = in.stride;
         return;
       }
-      default: put_step(number_of(in.op), of(in.to), of(in.a), of(in.b), of(in.c));
+      default: put_step(number_of(in.op), of(in.to), of(in.a), of(in.b), of(in.c), of(in.d));
     }
   }
 

@@ -15,13 +15,13 @@ namespace {
 
 struct ValueKey {
   ShaderOp op;
-  ShaderValue a, b, c;
+  ShaderValue a, b, c, d;
   bool operator==(const ValueKey&) const = default;
 };
 struct ValueKeyHash {
   std::size_t operator()(const ValueKey& key) const {
     std::uint64_t h = static_cast<std::uint64_t>(key.op);
-    for (const ShaderValue of : {key.a, key.b, key.c}) h = (h ^ of) * 0x9E3779B97F4A7C15u;
+    for (const ShaderValue of : {key.a, key.b, key.c, key.d}) h = (h ^ of) * 0x9E3779B97F4A7C15u;
     return static_cast<std::size_t>(h ^ h >> 29);
   }
 };
@@ -215,7 +215,7 @@ class Forwarding {
   }
   std::size_t depth_of(const ShaderInstruction& in) const {
     std::size_t depth = 0;
-    for (const ShaderValue of : {in.a, in.b, in.c}) {
+    for (const ShaderValue of : {in.a, in.b, in.c, in.d}) {
       if (of != kNoValue && !tree_.is_constant(of))
         depth = std::max<std::size_t>(depth, loop_of_[of]);
     }
@@ -235,7 +235,7 @@ class Forwarding {
       same_[in.to] = simple;
       return;
     }
-    ValueKey key{in.op, in.a, in.b, in.c};
+    ValueKey key{in.op, in.a, in.b, in.c, in.d};
     if (swaps(in.op) && key.b < key.a) std::swap(key.a, key.b);
     const auto [found, is_new] = made_.try_emplace(key, in.to);
     if (!is_new) {
@@ -256,7 +256,7 @@ class Forwarding {
   void run_size(ShaderNode& node, ShaderRegion& to) {
     const ShaderSample& sample = tree_.samples[node.instruction.place];
     const ValueKey key{ShaderOp::sample, sample.texture, sample.more[0],
-                       static_cast<ShaderValue>(sample.kind)};
+                       static_cast<ShaderValue>(sample.kind), kNoValue};
     const auto [found, is_new] = made_.try_emplace(key, node.instruction.place);
     if (!is_new) {
       ShaderSample& first = tree_.samples[found->second];
@@ -288,8 +288,9 @@ class Forwarding {
     const auto is_known = [&](ShaderValue of) { return of == kNoValue || tree_.is_constant(of); };
     const auto bits = [&](ShaderValue of) { return of == kNoValue ? 0u : tree_.bits(of); };
     if (in.op == copy) return in.a;
-    if (in.op < derivative_x && is_known(in.a) && is_known(in.b) && is_known(in.c)) {
-      return constant(fold_shader_op(in.op, bits(in.a), bits(in.b), bits(in.c)));
+    if (in.op < derivative_x && is_known(in.a) && is_known(in.b) && is_known(in.c) &&
+        is_known(in.d)) {
+      return constant(fold_shader_op(in.op, bits(in.a), bits(in.b), bits(in.c), bits(in.d)));
     }
     if (in.op == bit_not && turned_of(in.a) != kNoValue) return turned_of(in.a);
     if (in.op == select) {

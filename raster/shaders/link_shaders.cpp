@@ -90,7 +90,7 @@ class Ports {
     }
     int sum = 0;
     for (const SpirvId member : type.members) sum += locations(member);
-    return type.kind == SpirvKind::structure ? sum : 1;
+    return type.kind == SpirvKind::structure ? sum : static_cast<int>(type.scalars + 3) / 4;
   }
 
   void add_numbers(SpirvId id, std::vector<SpirvKind>& to) const {
@@ -98,7 +98,7 @@ class Ports {
     if (type.kind == SpirvKind::structure) {
       for (const SpirvId member : type.members) add_numbers(member, to);
     } else if (type.element == 0) {
-      to.push_back(type.kind);
+      to.insert(to.end(), type.scalars, type.kind);
     } else {
       for (std::uint32_t i = 0; i < type.count; ++i) add_numbers(type.element, to);
     }
@@ -165,8 +165,9 @@ struct TypePair {
 
   bool is_same(SpirvId our, SpirvId their) const {
     const SpirvType &a = ours.type(our), &b = theirs.type(their);
-    if (a.kind != b.kind || a.is_signed != b.is_signed || a.dim != b.dim ||
-        a.is_arrayed != b.is_arrayed || a.is_shadow != b.is_shadow ||
+    const bool is_number = a.element == 0 && a.members.empty();
+    if (a.kind != b.kind || (is_number && a.scalars != b.scalars) || a.is_signed != b.is_signed ||
+        a.dim != b.dim || a.is_arrayed != b.is_arrayed || a.is_shadow != b.is_shadow ||
         ((of_block || a.kind != SpirvKind::array) && a.count != b.count) ||
         a.members.size() != b.members.size() || (a.element == 0) != (b.element == 0)) {
       return false;

@@ -15,7 +15,7 @@ struct ShaderPort {
   std::string name{};
   int location = -1, component = 0;  ///< -1: left to linking
   int locations = 1;                 ///< that it takes
-  std::vector<SpirvKind> numbers{};  ///< each of its numbers: floating, integer or boolean
+  std::vector<SpirvKind> numbers{};  ///< each of its words: floating, integer or boolean
   bool is_used = true;               ///< by an instruction; of a block, whether any member is
   SpirvId of = 0;                    ///< the variable or the block's type
   int member = -1;                   ///< of the block

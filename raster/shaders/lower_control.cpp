@@ -364,6 +364,7 @@ void Lowering::run(Call& call, const SpirvInstruction& in, ShaderRegion& to) {
     default: break;
   }
   Scalars made = result(call, in, to);
+  if (module_.has_doubles) made = words_of(made);
   if (made.size() != scalars(in.type)) damaged("a result is not of its type");
   call.values[in.result] = std::move(made);
   call.types[in.result] = in.type;

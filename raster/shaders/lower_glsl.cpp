@@ -100,6 +100,7 @@ ShaderValue Lowering::glsl_scalar(GlslOp op, ShaderValue a, ShaderValue b, Shade
   const auto clamp = [&](ShaderValue x, ShaderValue low, ShaderValue high) {
     return make(to, ShaderOp::minimum, make(to, ShaderOp::maximum, x, low), high);
   };
+  const auto number = [&](float value) { return constant_like(a, value); };
   switch (op) {
     case radians: return multiply(a, constant(std::numbers::pi_v<float> / 180.0f));
     case degrees: return multiply(a, constant(180.0f / std::numbers::pi_v<float>));
@@ -110,14 +111,13 @@ ShaderValue Lowering::glsl_scalar(GlslOp op, ShaderValue a, ShaderValue b, Shade
     case signed_clamp:
       return make(to, ShaderOp::minimum_signed, make(to, ShaderOp::maximum_signed, a, b), c);
     case float_mix:  // a (1 - c) + b c
-      return make(to, ShaderOp::add, multiply(a, subtract(constant(1.0f), c)), multiply(b, c));
+      return make(to, ShaderOp::add, multiply(a, subtract(number(1.0f), c)), multiply(b, c));
     case step:
-      return make(to, ShaderOp::select, make(to, ShaderOp::less, b, a), constant(0.0f),
-                  constant(1.0f));
+      return make(to, ShaderOp::select, make(to, ShaderOp::less, b, a), number(0.0f), number(1.0f));
     case smooth_step: {  // t = clamp((c - a) / (b - a), 0, 1); (t t) (3 - 2 t)
       const ShaderValue t = clamp(make(to, ShaderOp::divide, subtract(c, a), subtract(b, a)),
-                                  constant(0.0f), constant(1.0f));
-      return multiply(multiply(t, t), subtract(constant(3.0f), multiply(constant(2.0f), t)));
+                                  number(0.0f), number(1.0f));
+      return multiply(multiply(t, t), subtract(number(3.0f), multiply(number(2.0f), t)));
     }
     default: return make(to, plain_op(op), a, b, c);
   }
@@ -135,13 +135,13 @@ Scalars Lowering::glsl_result(Call& call, const SpirvInstruction& in, ShaderRegi
     return this->load(to, place(call, word(w, 2)));  // a pixel has one sample, its middle
   }
   std::vector<Scalars> of;
-  for (const SpirvId id : w.subspan(2)) of.push_back(value(call, id));
+  for (const SpirvId id : w.subspan(2)) of.push_back(numbers(call, id));
   if (of.empty() || of[0].empty()) damaged("a function has no operand");
   switch (op) {
     case determinant:
     case matrix_inverse: {
       const SpirvType& matrix = type(type_of(call, w[2]));
-      if (matrix.kind != SpirvKind::matrix || matrix.count != scalars(matrix.element)) {
+      if (matrix.kind != SpirvKind::matrix || matrix.count != type(matrix.element).count) {
         damaged("a matrix is not square");
       }
       if (op == determinant) return {this->determinant(of[0], matrix.count, to)};
@@ -167,6 +167,8 @@ Scalars Lowering::glsl_result(Call& call, const SpirvInstruction& in, ShaderRegi
     case face_forward:
     case reflect:
     case refract: return glsl_vectors(op, of, to);
+    case pack_double_2x32: return of[0];
+    case unpack_double_2x32: return bits_of_doubles(to, of[0]);
     default: break;
   }
   if (op >= pack_snorm_4x8 && op <= unpack_unorm_4x8) return glsl_packs(op, of[0], to);
@@ -190,7 +192,7 @@ Scalars Lowering::glsl_result(Call& call, const SpirvInstruction& in, ShaderRegi
 
 Scalars Lowering::glsl_pointers(Call& call, const SpirvInstruction& in, GlslOp op,
                                 ShaderRegion& to) {
-  const Scalars all = value(call, word(in.operands, 2));
+  const Scalars all = numbers(call, word(in.operands, 2));
   Scalars made, second;
   for (const ShaderValue x : all) {
     if (op == GlslOp::modf) {
@@ -202,6 +204,7 @@ Scalars Lowering::glsl_pointers(Call& call, const SpirvInstruction& in, GlslOp o
     }
   }
   const Place at = place(call, word(in.operands, 3));
+  second = words_of(second);
   if (scalars(at.type) != second.size()) damaged("another type is stored");
   this->store(to, at, second);
   return made;
@@ -216,6 +219,7 @@ Scalars Lowering::glsl_vectors(GlslOp op, const std::vector<Scalars>& of, Shader
     return make(to, ShaderOp::subtract, x, y);
   };
   const Scalars& a = of[0];
+  const auto number = [&](float value) { return constant_like(a[0], value); };
   const std::size_t wanted = op == length || op == normalize                  ? 1
                              : op == distance || op == cross || op == reflect ? 2
                                                                               : 3;
@@ -247,30 +251,34 @@ Scalars Lowering::glsl_vectors(GlslOp op, const std::vector<Scalars>& of, Shader
       return made;
     }
     case face_forward: {
-      const ShaderValue keeps = make(to, ShaderOp::less, dot(to, of[2], of[1]), constant(0.0f));
+      const ShaderValue keeps = make(to, ShaderOp::less, dot(to, of[2], of[1]), number(0.0f));
       for (const ShaderValue x : a) {
         made.push_back(make(to, ShaderOp::select, keeps, x, make(to, ShaderOp::negate, x)));
       }
       return made;
     }
     case reflect: {  // a - (2 dot(n, a)) n
-      const ShaderValue twice = multiply(constant(2.0f), dot(to, of[1], a));
+      const ShaderValue twice = multiply(number(2.0f), dot(to, of[1], a));
       for (std::size_t i = 0; i < a.size(); ++i) {
         made.push_back(subtract(a[i], multiply(twice, of[1][i])));
       }
       return made;
     }
-    default: {  // refract
-      const ShaderValue eta = of[2][0], cosine = dot(to, of[1], a);
+    default: {                     // refract
+      ShaderValue eta = of[2][0];  // a float, whatever the vectors are of
+      if (is_double(a[0]) && !is_double(eta)) {
+        eta = convert_to_double(to, ShaderOp::double_of_float, eta);
+      }
+      const ShaderValue cosine = dot(to, of[1], a);
       // k = 1 - (eta eta) (1 - cosine cosine)
-      const ShaderValue k = subtract(
-          constant(1.0f),
-          multiply(multiply(eta, eta), subtract(constant(1.0f), multiply(cosine, cosine))));
-      const ShaderValue none = make(to, ShaderOp::less, k, constant(0.0f));
+      const ShaderValue k =
+          subtract(number(1.0f),
+                   multiply(multiply(eta, eta), subtract(number(1.0f), multiply(cosine, cosine))));
+      const ShaderValue none = make(to, ShaderOp::less, k, number(0.0f));
       const ShaderValue along =
           make(to, ShaderOp::add, multiply(eta, cosine), make(to, ShaderOp::square_root, k));
       for (std::size_t i = 0; i < a.size(); ++i) {
-        made.push_back(make(to, ShaderOp::select, none, constant(0.0f),
+        made.push_back(make(to, ShaderOp::select, none, number(0.0f),
                             subtract(multiply(eta, a[i]), multiply(along, of[1][i]))));
       }
       return made;

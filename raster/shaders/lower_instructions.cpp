@@ -100,13 +100,14 @@ Scalars Lowering::vector_result(Call& call, const SpirvInstruction& in, ShaderRe
       return made;
     }
     case vector_shuffle: {
-      Scalars both = value(call, word(w, 0));
-      const Scalars second = value(call, word(w, 1));
+      Scalars both = numbers(call, word(w, 0));
+      const Scalars second = numbers(call, word(w, 1));
       both.insert(both.end(), second.begin(), second.end());
+      if (both.empty()) damaged("a vector has no parts");
       Scalars made;
       for (const std::uint32_t i : w.subspan(2)) {
         if (i != ~0u && i >= both.size()) damaged("a shuffle takes what is not there");
-        made.push_back(i == ~0u ? whole(0) : both[i]);
+        made.push_back(i == ~0u ? constant_like(both[0], 0.0f) : both[i]);
       }
       return made;
     }
@@ -136,7 +137,7 @@ Scalars Lowering::vector_result(Call& call, const SpirvInstruction& in, ShaderRe
       return all;
     }
     case vector_extract_dynamic: {
-      const Scalars all = value(call, word(w, 0));
+      const Scalars all = numbers(call, word(w, 0));
       if (all.empty()) damaged("a vector has no parts");
       const ShaderValue index =
           clamped(to, scalar(call, word(w, 1)), static_cast<std::uint32_t>(all.size()));
@@ -148,20 +149,20 @@ Scalars Lowering::vector_result(Call& call, const SpirvInstruction& in, ShaderRe
       return {chosen};
     }
     case vector_insert_dynamic: {
-      Scalars all = value(call, word(w, 0));
-      if (all.empty()) damaged("a vector has no parts");
-      const ShaderValue object = scalar(call, word(w, 1));
+      Scalars all = numbers(call, word(w, 0));
+      const Scalars object = numbers(call, word(w, 1));
+      if (all.empty() || object.size() != 1) damaged("a vector has no parts");
       const ShaderValue index =
           clamped(to, scalar(call, word(w, 2)), static_cast<std::uint32_t>(all.size()));
       for (std::uint32_t i = 0; i < all.size(); ++i) {
         all[i] = make(to, ShaderOp::select, make(to, ShaderOp::equal_integers, index, whole(i)),
-                      object, all[i]);
+                      object[0], all[i]);
       }
       return all;
     }
     case SpirvOp::select: {
       const Scalars condition = value(call, word(w, 0));
-      const Scalars yes = value(call, word(w, 1)), no = value(call, word(w, 2));
+      const Scalars yes = numbers(call, word(w, 1)), no = numbers(call, word(w, 2));
       if (yes.size() != no.size() || (condition.size() != 1 && condition.size() != yes.size())) {
         damaged("a choice is between two types");
       }
@@ -186,12 +187,12 @@ Scalars Lowering::vector_result(Call& call, const SpirvInstruction& in, ShaderRe
 
 Scalars Lowering::matrix_result(Call& call, const SpirvInstruction& in, ShaderRegion& to) {
   const Words& w = in.operands;
-  const Scalars a = value(call, word(w, 0));
+  const Scalars a = numbers(call, word(w, 0));
   const SpirvType& of_a = type(type_of(call, w[0]));
   using enum SpirvOp;
   if (in.op == transpose) {
     if (of_a.kind != SpirvKind::matrix) damaged("a matrix is none");
-    const std::uint32_t rows = scalars(of_a.element);
+    const std::uint32_t rows = type(of_a.element).count;
     Scalars made;
     for (std::uint32_t row = 0; row < rows; ++row) {
       for (std::uint32_t column = 0; column < of_a.count; ++column) {
@@ -200,7 +201,7 @@ Scalars Lowering::matrix_result(Call& call, const SpirvInstruction& in, ShaderRe
     }
     return made;
   }
-  const Scalars b = value(call, word(w, 1));
+  const Scalars b = numbers(call, word(w, 1));
   const SpirvType& of_b = type(type_of(call, w[1]));
   switch (in.op) {
     case vector_times_scalar:
@@ -229,7 +230,7 @@ Scalars Lowering::matrix_result(Call& call, const SpirvInstruction& in, ShaderRe
     }
     default: {  // a matrix times a vector, or times each column of a matrix
       if (of_a.kind != SpirvKind::matrix) damaged("a matrix is none");
-      const std::uint32_t rows = scalars(of_a.element), inner = of_a.count;
+      const std::uint32_t rows = type(of_a.element).count, inner = of_a.count;
       if (b.empty() || b.size() % inner != 0) damaged("matrices of two sizes are multiplied");
       Scalars made;
       for (std::uint32_t column = 0; column < b.size() / inner; ++column) {
@@ -340,8 +341,9 @@ std::optional<std::uint32_t> fold_spirv_op(SpirvOp op, std::uint32_t a, std::uin
 
 Scalars Lowering::numbers_result(Call& call, const SpirvInstruction& in, ShaderRegion& to) {
   const Words& w = in.operands;
-  Scalars a = value(call, word(w, 0));
-  const Scalars b = w.size() > 1 ? value(call, w[1]) : Scalars{};
+  Scalars a = numbers(call, word(w, 0));
+  const Scalars b = w.size() > 1 ? numbers(call, w[1]) : Scalars{};
+  const bool gives_doubles = module_.has_doubles && holds_doubles(in.type);
   const auto of_b = [&](std::size_t i) {
     if (i >= b.size()) damaged("an instruction has too few operands");
     return b[i];
@@ -355,6 +357,10 @@ Scalars Lowering::numbers_result(Call& call, const SpirvInstruction& in, ShaderR
   if (const std::optional<Mapped> one = mapped(in.op)) {
     if (one->op >= ShaderOp::derivative_x && one->op <= ShaderOp::derivative_y_coarse) {
       tree_.has_derivatives = true;
+    }
+    if (gives_doubles && (one->op == ShaderOp::from_signed || one->op == ShaderOp::from_unsigned)) {
+      for (const ShaderValue of : a) made.push_back(convert_to_double(to, one->op, of));
+      return made;
     }
     for (std::size_t i = 0; i < a.size(); ++i) {
       const ShaderValue second = has_one_operand(in.op) ? kNoValue : of_b(i);
@@ -373,6 +379,7 @@ Scalars Lowering::numbers_result(Call& call, const SpirvInstruction& in, ShaderR
                SpirvKind::floating;
       };
       if (!is_float(type_of(call, w[0])) || is_float(in.type)) return a;
+      if (module_.has_doubles && holds_doubles(type_of(call, w[0]))) return bits_of_doubles(to, a);
       for (const ShaderValue of : a) {
         made.push_back(make(to, ShaderOp::select, make(to, ShaderOp::not_equal, of, of),
                             whole(0x7FC00000u), of));
@@ -380,8 +387,14 @@ Scalars Lowering::numbers_result(Call& call, const SpirvInstruction& in, ShaderR
       return made;
     }
     case unsigned_convert:
-    case signed_convert:
-    case float_convert: return a;
+    case signed_convert: return a;
+    case float_convert:
+      for (const ShaderValue of : a) {
+        made.push_back(is_double(of) == gives_doubles ? of
+                       : gives_doubles ? convert_to_double(to, ShaderOp::double_of_float, of)
+                                       : make(to, ShaderOp::float_of_double, of));
+      }
+      return made;
     case is_nan:
       for (const ShaderValue of : a) made.push_back(make(to, ShaderOp::not_equal, of, of));
       return made;

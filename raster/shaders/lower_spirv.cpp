@@ -97,6 +97,11 @@ class UniformCollector {
       made.rows = type->count;
       type = &module_.type(type->element);
     }
+    if (type->kind == SpirvKind::floating && type->scalars > 1) {
+      throw ShaderError("uniform '" + name +
+                        "' is of doubles, which is not supported; use float, or a uvec2 that "
+                        "packDouble2x32() reads");
+    }
     made.kind = type->kind;
     made.is_signed = type->is_signed;
     push(std::move(made), 0);
@@ -172,6 +177,7 @@ void Lowering::lower() {
 }
 
 void Lowering::add_inputs(SpirvId id, const SpirvDecorations& of) {
+  const bool is_vertex = module_.stage == ShaderStage::vertex;
   const SpirvType& what = type(id);
   if (what.kind == SpirvKind::structure) {
     for_each_member(id, of, [&](SpirvId member, SpirvDecorations with) {
@@ -188,6 +194,10 @@ void Lowering::add_inputs(SpirvId id, const SpirvDecorations& of) {
     return;
   }
   const bool is_integer = has_integers(what);
+  if (module_.has_doubles && holds_doubles(id) && (is_vertex || !of.is_flat)) {
+    refuse(std::string{is_vertex ? "attributes" : "inputs that are not flat"} +
+           " of doubles are not supported: '" + of.name + "'; use uvec2 and packDouble2x32()");
+  }
   add_numbers(id, of, [&](int location, int component, int part) {
     tree_.inputs.push_back(
         {of.builtin, location, component, part, of.is_flat, of.is_linear, is_integer});
@@ -209,6 +219,9 @@ void Lowering::add_outputs(std::uint32_t first, SpirvId id, const SpirvDecoratio
       first += scalars(element);
     });
     return;
+  }
+  if (module_.has_doubles && holds_doubles(id) && module_.stage == ShaderStage::fragment) {
+    refuse("a pixel's output '" + of.name + "' is of doubles; float would be right");
   }
   const bool is_integer = has_integers(type(id));
   const bool is_clamped = of.name == "gl_FrontColor" || of.name == "gl_FrontSecondaryColor";
@@ -233,7 +246,8 @@ int Lowering::locations(SpirvId id) const {
   }
   int sum = 0;
   for (const SpirvId member : what.members) sum += locations(member);
-  return what.kind == SpirvKind::structure ? sum : 1;
+  // A location has four words.
+  return what.kind == SpirvKind::structure ? sum : static_cast<int>(what.scalars + 3) / 4;
 }
 
 ShaderValue Lowering::load_one(ShaderRegion& to, const Place& at, std::uint32_t number) {

@@ -153,8 +153,11 @@ class Lowering {
       row = &type(row->element);
     }
     const int each = std::max(1, static_cast<int>(row->scalars));
+    const int locations_of_row = (each + 3) / 4;
     for (int i = 0; i < count; ++i) {
-      add(of.location < 0 ? 0 : of.location + i / each, of.component + i % each, i);
+      const int place = i % each;
+      add(of.location < 0 ? 0 : of.location + i / each * locations_of_row + place / 4,
+          of.component + place % 4, i);
     }
   }
 
@@ -183,16 +186,18 @@ class Lowering {
   ShaderValue whole(std::uint32_t value) { return tree_.constant(value); }
 
   ShaderValue make(ShaderRegion& to, ShaderOp op, ShaderValue a, ShaderValue b = kNoValue,
-                   ShaderValue c = kNoValue) {
+                   ShaderValue c = kNoValue, ShaderValue d = kNoValue) {
+    if (is_double(a) || is_double(b) || is_double(c)) return make_of_doubles(to, op, a, b, c);
     const auto known = [&](ShaderValue v) { return v == kNoValue || tree_.is_constant(v); };
     const auto bits = [&](ShaderValue v) { return v == kNoValue ? 0u : tree_.bits(v); };
-    if (known(a) && known(b) && known(c) && op < ShaderOp::derivative_x) {
-      return tree_.constant(fold_shader_op(op, bits(a), bits(b), bits(c)));
+    if (known(a) && known(b) && known(c) && known(d) && op < ShaderOp::derivative_x) {
+      return tree_.constant(fold_shader_op(op, bits(a), bits(b), bits(c), bits(d)));
     }
     ShaderInstruction& in = add(to, op);
     in.a = a;
     in.b = b;
     in.c = c;
+    in.d = d;
     in.to = tree_.new_value();
     return in.to;
   }
@@ -214,6 +219,35 @@ class Lowering {
       set(to, first + i, whole(words == nullptr ? 0 : (*words)[i]));
     }
   }
+
+  // --- doubles ---
+
+  // Values of ids and what lies in memory are words, a double's low one first. While an operation
+  // is lowered a double is one number, so that its order of operations is that of floats.
+  struct DoubleWords {
+    ShaderValue low, high;
+  };
+  static constexpr ShaderValue kDouble = 0x80000000;  ///< and its place among these:
+  std::vector<DoubleWords> doubles_{};
+
+  static bool is_double(ShaderValue of) { return of != kNoValue && (of & kDouble) != 0; }
+  bool holds_doubles(SpirvId id) const {
+    const SpirvType* of = &type(id);
+    while (of->element != 0) of = &type(of->element);
+    return of->kind == SpirvKind::floating && of->scalars == 2;
+  }
+  ShaderValue double_of(ShaderValue low, ShaderValue high);
+  /// A number that all of its kind have.
+  ShaderValue constant_like(ShaderValue of, float value);
+  /// What value() gives, with doubles as numbers; and back again.
+  Scalars numbers(const Call& call, SpirvId id);
+  Scalars words_of(const Scalars& numbers) const;
+  /// The words of doubles as whole numbers: every NaN is the same one.
+  Scalars bits_of_doubles(ShaderRegion& to, const Scalars& of);
+  /// `from`: from_signed, from_unsigned, or double_of_float.
+  ShaderValue convert_to_double(ShaderRegion& to, ShaderOp from, ShaderValue a);
+  ShaderValue make_of_doubles(ShaderRegion& to, ShaderOp op, ShaderValue a, ShaderValue b,
+                              ShaderValue c);
 
   // --- memory ---
 

@@ -100,28 +100,84 @@ struct HighSigned {
 /// x = mantissa 2^exponent with 1/2 <= |mantissa| < 1; 0, infinities and NaN are their own
 /// mantissa, with exponent 0.
 struct MantissaOf {
-  float operator()(float x, float) const {
+  template <class Number>
+  Number operator()(Number x, Number) const {
     int exponent = 0;
-    return x - x != 0.0f ? x : std::frexp(x, &exponent);
+    return x - x != Number{} ? x : std::frexp(x, &exponent);
   }
 };
 struct ExponentOf {
-  std::int32_t operator()(float x) const {
+  template <class Number>
+  std::int32_t operator()(Number x) const {
     int exponent = 0;
-    if (x - x == 0.0f) static_cast<void>(std::frexp(x, &exponent));
+    if (x - x == Number{}) static_cast<void>(std::frexp(x, &exponent));
     return exponent;
   }
 };
-/// x 2^n, rounded once.
-struct Scale {
-  float operator()(float x, std::int32_t n) const {
-    return std::ldexp(x, n < -400 ? -400 : n > 400 ? 400 : n);
+/// x 2^n, rounded once. Beyond `most` all numbers are 0 or infinite.
+template <class Number>
+Number scaled(Number x, std::int32_t n, std::int32_t most) {
+  return std::ldexp(x, n < -most ? -most : n > most ? most : n);
+}
+
+/// Of operations that give a double, by that of the low word.
+template <ShaderOp op>
+double double_of(double x, double y, std::uint32_t a, std::uint32_t c) {
+  using Op = ShaderOp;
+  if constexpr (op == Op::add_doubles) return x + y;
+  if constexpr (op == Op::subtract_doubles) return x - y;
+  if constexpr (op == Op::multiply_doubles) return x * y;
+  if constexpr (op == Op::divide_doubles) return x / y;
+  if constexpr (op == Op::square_root_of_double) return std::sqrt(x);
+  if constexpr (op == Op::floor_of_double) return std::floor(x);
+  if constexpr (op == Op::round_even_double) return std::nearbyint(x);
+  if constexpr (op == Op::mantissa_of_double) return MantissaOf{}(x, 0.0);
+  if constexpr (op == Op::scale_double) return scaled(x, std::bit_cast<std::int32_t>(c), 2200);
+  if constexpr (op == Op::double_of_float) return static_cast<double>(std::bit_cast<float>(a));
+  return static_cast<double>(std::bit_cast<std::int32_t>(a));  // double_of_signed
+}
+
+/// Lane by lane: a and b are the words of x, c and d of y.
+template <ShaderOp op>
+SOFTFOCUS_INLINE Bits apply_to_doubles(Bits a, Bits b, Bits c, Bits d) {
+  using Op = ShaderOp;
+  std::uint32_t words[4][kLanes], made[kLanes];
+  std::memcpy(words[0], &a, sizeof a);
+  std::memcpy(words[1], &b, sizeof b);
+  std::memcpy(words[2], &c, sizeof c);
+  std::memcpy(words[3], &d, sizeof d);
+  for (int i = 0; i < kLanes; ++i) {
+    const auto x = std::bit_cast<double>(std::uint64_t{words[1][i]} << 32 | words[0][i]);
+    const auto y = std::bit_cast<double>(std::uint64_t{words[3][i]} << 32 | words[2][i]);
+    if constexpr (op < Op::float_of_double) {
+      constexpr int kIsHigh = (static_cast<int>(op) - static_cast<int>(Op::add_doubles)) % 2;
+      constexpr auto kLow = static_cast<Op>(static_cast<int>(op) - kIsHigh);
+      const double value = double_of<kLow>(x, y, words[0][i], words[2][i]);
+      made[i] = static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(value) >> (32 * kIsHigh));
+    }
+    if constexpr (op == Op::float_of_double) {
+      made[i] = std::bit_cast<std::uint32_t>(static_cast<float>(x));
+    }
+    if constexpr (op == Op::signed_of_double) {
+      made[i] = static_cast<std::uint32_t>(
+          x > -2147483649.0 && x < 0x1p31 ? static_cast<std::int32_t>(x) : INT32_MIN);
+    }
+    if constexpr (op == Op::exponent_of_double) {
+      made[i] = static_cast<std::uint32_t>(ExponentOf{}(x));
+    }
+    if constexpr (op == Op::equal_doubles) made[i] = x == y ? ~0u : 0u;
+    if constexpr (op == Op::less_doubles) made[i] = x < y ? ~0u : 0u;
+    if constexpr (op == Op::less_equal_doubles) made[i] = x <= y ? ~0u : 0u;
   }
-};
+  Bits v;
+  std::memcpy(&v, made, sizeof v);
+  return v;
+}
 
 template <ShaderOp op>
-SOFTFOCUS_INLINE Bits apply(Bits a, Bits b, Bits c) {
+SOFTFOCUS_INLINE Bits apply(Bits a, Bits b, Bits c, [[maybe_unused]] Bits d) {
   using Op = ShaderOp;
+  if constexpr (is_of_doubles(op)) return apply_to_doubles<op>(a, b, c, d);
   const Floats x = as_floats(a), y = as_floats(b);
   const Ints i = as_ints(a), j = as_ints(b);
   static_cast<void>(x), static_cast<void>(y), static_cast<void>(i), static_cast<void>(j);
@@ -178,7 +234,7 @@ SOFTFOCUS_INLINE Bits apply(Bits a, Bits b, Bits c) {
     std::memcpy(of_n, &b, sizeof b);
     for (int lane = 0; lane < kLanes; ++lane) {
       if constexpr (op == Op::exponent_of) of_n[lane] = ExponentOf{}(of_x[lane]);
-      if constexpr (op == Op::scale_by_exponent) of_x[lane] = Scale{}(of_x[lane], of_n[lane]);
+      if constexpr (op == Op::scale_by_exponent) of_x[lane] = scaled(of_x[lane], of_n[lane], 400);
     }
     Bits made;
     std::memcpy(&made, op == Op::exponent_of ? static_cast<const void*>(of_n) : of_x, sizeof made);

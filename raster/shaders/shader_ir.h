@@ -24,7 +24,7 @@
 
 namespace softfocus {
 
-/// A value: a number of 32 bits a lane. Booleans are all bits or none.
+/// A value: a number of 32 bits a lane. Booleans are all bits or none; a double is two values.
 using ShaderValue = std::uint32_t;
 inline constexpr ShaderValue kNoValue = 0xFFFFFFFF;
 using ShaderVariable = std::uint32_t;
@@ -123,6 +123,36 @@ enum class ShaderOp : std::uint8_t {
   from_unsigned,
   to_half,
   from_half,
+  // Of doubles: a and b are the low and the high word of the first, c and d of the second. Those
+  // that give a double are two, for its low word and for its high word.
+  add_doubles,
+  add_doubles_high,
+  subtract_doubles,
+  subtract_doubles_high,
+  multiply_doubles,
+  multiply_doubles_high,
+  divide_doubles,
+  divide_doubles_high,
+  square_root_of_double,
+  square_root_of_double_high,
+  floor_of_double,
+  floor_of_double_high,
+  round_even_double,
+  round_even_double_high,
+  mantissa_of_double,
+  mantissa_of_double_high,
+  scale_double,  ///< by the exponent c
+  scale_double_high,
+  double_of_float,
+  double_of_float_high,
+  double_of_signed,
+  double_of_signed_high,
+  float_of_double,
+  signed_of_double,
+  exponent_of_double,
+  equal_doubles,
+  less_doubles,
+  less_equal_doubles,
   // Differences to the next pixel of the 2x2 block.
   derivative_x,
   derivative_y,
@@ -179,13 +209,18 @@ struct ShaderSample {
 struct ShaderInstruction {
   ShaderOp op{};
   ShaderValue to = kNoValue;
-  ShaderValue a = kNoValue, b = kNoValue, c = kNoValue;
+  ShaderValue a = kNoValue, b = kNoValue, c = kNoValue, d = kNoValue;
   /// A variable; the first of variables or of a table's numbers; an input; a sample.
   std::uint32_t place = 0;
   std::uint32_t count = 0;   ///< of places that an index chooses from
   std::uint32_t stride = 1;  ///< from one to the next
   ShaderLine line{};
 };
+
+/// Whether its operands or results are words of doubles.
+constexpr bool is_of_doubles(ShaderOp op) {
+  return op >= ShaderOp::add_doubles && op <= ShaderOp::less_equal_doubles;
+}
 
 struct ShaderNode;
 using ShaderRegion = std::vector<ShaderNode>;

@@ -27,20 +27,23 @@ bool steers(std::uint8_t op) { return op >= static_cast<std::uint8_t>(StepOp::ju
 
 }  // namespace
 
-std::uint32_t fold_shader_op(ShaderOp op, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+std::uint32_t fold_shader_op(ShaderOp op, std::uint32_t a, std::uint32_t b, std::uint32_t c,
+                             std::uint32_t d) {
   constexpr std::size_t kLaneRoom = 16;
-  alignas(64) std::array<std::uint32_t, 4 * kLaneRoom> memory;
+  alignas(64) std::array<std::uint32_t, 5 * kLaneRoom> memory;
   for (std::size_t i = 0; i < kLaneRoom; ++i) {
     memory[i] = a;
     memory[kLaneRoom + i] = b;
     memory[2 * kLaneRoom + i] = c;
+    memory[3 * kLaneRoom + i] = d;
   }
   constexpr std::uint32_t kBytes = 4 * kLaneRoom;
-  LaneStep step{.to = 3 * kBytes, .a = 0, .b = kBytes, .c = 2 * kBytes, .vectors = 1};
+  LaneStep step{
+      .to = 4 * kBytes, .a = 0, .b = kBytes, .c = 2 * kBytes, .d = 3 * kBytes, .vectors = 1};
   LaneFrame frame{.memory = reinterpret_cast<std::byte*>(memory.data())};
   const Isa isa = Isa::baseline;
   SOFTFOCUS_KERNEL(isa, lane_function)(static_cast<std::uint8_t>(op))(step, frame);
-  return memory[3 * kLaneRoom];
+  return memory[4 * kLaneRoom];
 }
 
 LaneProgram lane_program(const ShaderProgram& program, int lanes, Isa isa) {
@@ -68,9 +71,11 @@ LaneProgram lane_program(const ShaderProgram& program, int lanes, Isa isa) {
                 .a = place(step.a),
                 .b = place(step.b),
                 .c = place(step.c),
+                .d = place(step.d),
                 .a_next = next(step.a),
                 .b_next = next(step.b),
                 .c_next = next(step.c),
+                .d_next = next(step.d),
                 .vectors = step.to.is_there && !step.to.varies ? std::uint16_t{1} : vectors,
                 .place = step.place,
                 .count = step.count,
@@ -204,7 +209,7 @@ constexpr bool is_binary(ShaderOp op) {
 constexpr bool is_ternary(ShaderOp op) {
   using enum ShaderOp;
   return op == ShaderOp::fused_multiply_add || op == ShaderOp::select ||
-         op == extract_bits_signed || op == extract_bits_unsigned;
+         op == extract_bits_signed || op == extract_bits_unsigned || is_of_doubles(op);
 }
 
 SOFTFOCUS_INLINE Bits bits_at(const std::byte* from) {
@@ -219,9 +224,10 @@ void run_step(const LaneStep& step, LaneFrame& frame) {
   const std::byte* a = frame.memory + step.a;
   const std::byte* b = frame.memory + step.b;
   const std::byte* c = frame.memory + step.c;
+  [[maybe_unused]] const std::byte* d = frame.memory + step.d;
   std::byte* to = frame.memory + step.to;
   for (int n = step.vectors; n > 0; --n) {
-    Bits of_b{}, of_c{};
+    Bits of_b{}, of_c{}, of_d{};
     if constexpr (is_binary(op)) {
       of_b = bits_at(b);
       b += step.b_next;
@@ -230,7 +236,11 @@ void run_step(const LaneStep& step, LaneFrame& frame) {
       of_c = bits_at(c);
       c += step.c_next;
     }
-    put_bits(to, apply<op>(bits_at(a), of_b, of_c));
+    if constexpr (is_of_doubles(op)) {
+      of_d = bits_at(d);
+      d += step.d_next;
+    }
+    put_bits(to, apply<op>(bits_at(a), of_b, of_c, of_d));
     a += step.a_next;
     to += sizeof(Bits);
   }

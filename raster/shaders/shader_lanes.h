@@ -29,8 +29,9 @@ using LaneFunction = void (*)(const LaneStep&, LaneFrame&);
 /// A step with the places of its registers in memory.
 struct LaneStep {
   LaneFunction run = nullptr;                        ///< null of a step that steers
-  std::uint32_t to = 0, a = 0, b = 0, c = 0;         ///< bytes into memory
-  std::uint16_t a_next = 0, b_next = 0, c_next = 0;  ///< bytes to the next vector, or 0
+  std::uint32_t to = 0, a = 0, b = 0, c = 0, d = 0;  ///< bytes into memory
+  /// Bytes to the next vector, or 0.
+  std::uint16_t a_next = 0, b_next = 0, c_next = 0, d_next = 0;
   std::uint16_t vectors = 0;
   std::uint32_t place = 0, count = 0, stride = 0;
   std::uint8_t op = 0;

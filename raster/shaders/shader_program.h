@@ -33,7 +33,7 @@ struct ShaderRegister {
 
 struct ShaderStep {
   std::uint8_t op = 0;
-  ShaderRegister to{}, a{}, b{}, c{};
+  ShaderRegister to{}, a{}, b{}, c{}, d{};
   std::uint32_t place = 0;  ///< of a jump its target; of a table its begin; of a sample its number
   std::uint32_t count = 0, stride = 1;  ///< of an index
   ShaderLine line{};

@@ -23,7 +23,7 @@ std::vector<std::uint32_t> reads_of(const ShaderProgram& program) {
     if (of.is_there && of.varies) ++reads[of.number];
   };
   for (const ShaderStep& step : program.steps) {
-    for (const ShaderRegister& of : {step.a, step.b, step.c}) count(of);
+    for (const ShaderRegister& of : {step.a, step.b, step.c, step.d}) count(of);
   }
   for (const ShaderSampleRegisters& sample : program.samples) {
     for (const ShaderRegister& of : sample.at) count(of);
@@ -162,7 +162,7 @@ class Sharing {
   }
   template <class Body>
   void for_each_read(const ShaderStep& step, const Body& body) const {
-    for (const ShaderRegister& of : {step.a, step.b, step.c}) {
+    for (const ShaderRegister& of : {step.a, step.b, step.c, step.d}) {
       if (of.is_there && of.varies) body(of.number);
     }
     // What stays in other lanes is read, too.
@@ -337,7 +337,7 @@ class Sharing {
       if (of.is_there && of.varies) of.number = given_[of.number];
     };
     for (ShaderStep& step : program_.steps) {
-      for (ShaderRegister* of : {&step.to, &step.a, &step.b, &step.c}) give(*of);
+      for (ShaderRegister* of : {&step.to, &step.a, &step.b, &step.c, &step.d}) give(*of);
     }
     for (ShaderSampleRegisters& sample : program_.samples) {
       for (auto* list : {&sample.texture, &sample.sampler, &sample.compared}) give(*list);

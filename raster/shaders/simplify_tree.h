@@ -32,7 +32,7 @@ bool always_leaves(const ShaderRegion& region);
 /// Calls body(value) for each operand of an instruction, as a reference.
 template <class Body>
 void for_each_operand(ShaderTree& tree, ShaderInstruction& in, const Body& body) {
-  for (ShaderValue* of : {&in.a, &in.b, &in.c}) {
+  for (ShaderValue* of : {&in.a, &in.b, &in.c, &in.d}) {
     if (*of != kNoValue) body(*of);
   }
   if (in.op != ShaderOp::sample) return;

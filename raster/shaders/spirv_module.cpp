@@ -226,11 +226,11 @@ class Reader {
         add_type(in, integer, 1).is_signed = word(w, 1) != 0;
         return true;
       case type_float:
-        if (word(w, 0) != 32) {
-          refuse(std::string{word(w, 0) == 64 ? "double is" : "floats of 16 bits are"} +
-                 " not supported; use float");
+        if (word(w, 0) != 32 && word(w, 0) != 64) {
+          refuse("floats of " + std::to_string(word(w, 0)) + " bits are not supported; use float");
         }
-        add_type(in, floating, 1);
+        add_type(in, floating, word(w, 0) / 32);
+        if (word(w, 0) == 64) module_.has_doubles = true;
         return true;
       case type_vector:
       case type_matrix: {
@@ -254,6 +254,7 @@ class Reader {
         type.is_shadow = word(w, 2) == 1;
         type.is_arrayed = word(w, 3) != 0;
         type.is_multisampled = word(w, 4) != 0;
+        if (scalars_of(type.element) > 1) damaged_words("a texel has parts that it cannot have");
         if (word(w, 1) > 4) refuse("textures of buffers and input attachments are not supported");
         if (word(w, 5) == 2) refuse("images that a shader writes are not supported");
         return true;
@@ -328,7 +329,7 @@ class Reader {
         if (!is_kind(SpirvKind::integer) && !is_kind(SpirvKind::floating)) {
           damaged_words("a constant is not of its type");
         }
-        words = {word(in.operands, 0)};
+        for (std::size_t i = 0; i < scalars_of(in.type); ++i) words.push_back(word(in.operands, i));
         break;
       case constant_null:
       case undefined: words.assign(scalars_of(in.type), 0); break;
@@ -428,7 +429,6 @@ class Reader {
       return std::find(list.begin(), list.end(), number) != list.end();
     };
     if (is({3})) refuse("tessellation is not supported");
-    if (is({10})) refuse("double is not supported; use float");
     if (is({11, 12, 21})) refuse("atomic counters and 64-bit integers are not supported");
   }
 

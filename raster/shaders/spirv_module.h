@@ -59,7 +59,7 @@ struct SpirvType {
   SpirvStorage storage{};          ///< of a pointer
   SpirvDim dim{};                  ///< of an image
   bool is_arrayed = false, is_shadow = false, is_multisampled = false;
-  /// Scalars of 32 bits that a value consists of; 0 of what holds none.
+  /// Scalars of 32 bits that a value consists of, a double of two; 0 of what holds none.
   std::uint32_t scalars = 0;
   int depth = 0;  ///< of arrays and structures inside it
 };
@@ -120,6 +120,7 @@ struct SpirvModule {
   std::map<SpirvId, SpirvDecorations> decorations{};
   std::map<SpirvId, std::string> strings{};
   SpirvId glsl = 0;  ///< of "GLSL.std.450"
+  bool has_doubles = false;
 
   const SpirvType& type(SpirvId id) const { return types.at(id); }
   const SpirvType& pointed(SpirvId pointer) const { return type(type(pointer).element); }
@@ -135,7 +136,7 @@ inline constexpr int kDeepestTypes = 64;
 std::vector<std::uint32_t> spirv_words(std::span<const std::byte> file);
 
 /// Reads and checks a module of a vertex or fragment shader. Throws ShaderError for what is damaged
-/// and for what is not supported (other stages, numbers of other than 32 bits, storage buffers).
+/// and for what is not supported (other stages, integers of other than 32 bits, storage buffers).
 SpirvModule read_spirv(std::vector<std::uint32_t> words);
 
 /// "FILE:LINE: ", or nothing if the module does not say.

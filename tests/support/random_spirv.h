@@ -22,6 +22,7 @@ class RandomSpirv {
   explicit RandomSpirv(std::uint64_t seed) : random_{seed * 0x9E3779B97F4A7C15u + 1} {}
 
   std::vector<std::uint32_t> words() {
+    has_doubles_ = chance(50);
     declare();
     const int functions = random_.whole(0, 2);
     for (int i = 0; i < functions; ++i) make_function();
@@ -36,8 +37,8 @@ class RandomSpirv {
  private:
   using Words = std::vector<std::uint32_t>;
   using Id = std::uint32_t;
-  enum Kind : std::uint8_t { truth, whole, real };
-  static constexpr std::size_t kKinds = 3;
+  enum Kind : std::uint8_t { truth, whole, real, wide };  ///< wide: a double
+  static constexpr std::size_t kKinds = 4;
   using Known = std::array<std::vector<Id>, kKinds>;  ///< values that are there
 
   /// A way into a block.
@@ -70,6 +71,7 @@ class RandomSpirv {
   std::vector<Aim*> aims_{};
   int left_ = 0;
   std::optional<Kind> returns_{};
+  bool has_doubles_ = false;
 
   Id id() { return next_id_++; }
   bool chance(int percent) { return random_.whole(1, 100) <= percent; }
@@ -121,6 +123,7 @@ class RandomSpirv {
     type_[whole] = declared(type_int, {32, 1});
     type_[real] = declared(type_float, {32});
     vector_ = declared(type_vector, {type_[real], 4});
+    type_[wide] = declared(type_float, {64});
     for (const Kind kind : {truth, whole, real}) {
       pointer_[kind] = declared(type_pointer, {storage(SpirvStorage::function), type_[kind]});
     }
@@ -128,6 +131,13 @@ class RandomSpirv {
     low_bits_ = number(whole, 0xFFFFFF);
     for (const float x : {0.0f, 1.0f, 0.5f, -2.5f, 8.0f}) {
       number(real, std::bit_cast<std::uint32_t>(x));
+    }
+    for (const double x : {0.0, 1.0, 0.1, -2.5, 0x1p40}) {
+      const auto bits = std::bit_cast<std::uint64_t>(x);
+      constants_[wide].push_back(id());
+      put(types_, constant,
+          {type_[wide], constants_[wide].back(), static_cast<std::uint32_t>(bits),
+           static_cast<std::uint32_t>(bits >> 32)});
     }
     number(truth, 0);
     number(truth, 1);
@@ -151,8 +161,8 @@ class RandomSpirv {
   // --- values ---
 
   Kind some_kind() {
-    const int number = random_.whole(0, 9);
-    return number < 5 ? whole : number < 8 ? real : truth;
+    const int number = random_.whole(0, has_doubles_ ? 12 : 9);
+    return number < 5 ? whole : number < 8 ? real : number < 10 ? truth : wide;
   }
   Id some(Kind kind) { return some(kind, known_); }
   Id some(Kind kind, const Known& known) {
@@ -174,12 +184,22 @@ class RandomSpirv {
     if (chance(12)) {
       know(kind, made(SpirvOp::select, type_[kind], {some(truth), some(kind), some(kind)}));
     } else if (kind == whole && chance(15)) {
-      know(whole, made(convert_float_to_signed, type_[whole], {some(real)}));
+      const Kind from = has_doubles_ && chance(40) ? wide : real;
+      know(whole, made(convert_float_to_signed, type_[whole], {some(from)}));
     } else if (kind == whole) {
       const SpirvOp op = one_of({integer_add, integer_sub, integer_mul, signed_div, signed_mod,
                                  bitwise_and, bitwise_or, bitwise_xor, shift_left_logical,
                                  shift_right_arithmetic, bitwise_and});
       know(whole, made(op, type_[whole], {some(whole), some(whole)}));
+    } else if (kind == wide && chance(30)) {
+      const bool is_whole = chance(50);
+      know(wide, made(is_whole ? convert_signed_to_float : float_convert, type_[wide],
+                      {some(is_whole ? whole : real)}));
+    } else if (kind == wide) {
+      const SpirvOp op = one_of({float_add, float_sub, float_mul, float_div});
+      know(wide, made(op, type_[wide], {some(wide), some(wide)}));
+    } else if (kind == real && has_doubles_ && chance(15)) {
+      know(real, made(float_convert, type_[real], {some(wide)}));
     } else if (kind == real && chance(25)) {
       know(real, made(convert_signed_to_float, type_[real], {some(whole)}));
     } else if (kind == real) {
@@ -190,7 +210,8 @@ class RandomSpirv {
       know(truth, made(op, type_[truth], {some(whole), some(whole)}));
     } else if (chance(50)) {
       const SpirvOp op = one_of({float_ord_less_than, float_unord_not_equal, float_ord_equal});
-      know(truth, made(op, type_[truth], {some(real), some(real)}));
+      const Kind of = has_doubles_ && chance(50) ? wide : real;
+      know(truth, made(op, type_[truth], {some(of), some(of)}));
     } else {
       know(truth, made(one_of({logical_and, logical_or, logical_not_equal}), type_[truth],
                        {some(truth), some(truth)}));
@@ -520,6 +541,9 @@ class RandomSpirv {
       choices = made(integer_add, type_[whole], {choices, choices});
       choices = made(integer_add, type_[whole], {choices, bit});
       floats = made(float_add, type_[real], {floats, some(real)});
+      if (!has_doubles_) continue;
+      floats =
+          made(float_add, type_[real], {floats, made(float_convert, type_[real], {some(wide)})});
     }
     std::array<Id, 3> parts{values, memory, choices};
     for (Id& part : parts) {
@@ -534,6 +558,8 @@ class RandomSpirv {
     const Id main = id();
     Words entry;
     put(entry, SpirvOp::capability, {1});
+    constexpr std::uint32_t kFloat64 = 10;
+    put(entry, SpirvOp::capability, {kFloat64});
     put(entry, SpirvOp::memory_model, {0, 1});
     put(entry, SpirvOp::entry_point, {4, main, 0x6E69616D, 0, output_, coordinates_});
     put(entry, SpirvOp::execution_mode, {main, 7});

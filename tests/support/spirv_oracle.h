@@ -388,10 +388,255 @@ class Oracle {
     types_[in.result] = in.type;
   }
 
+  // --- doubles: the machine's ---
+
+  using Doubles = std::vector<double>;
+
+  bool holds_doubles(const SpirvType& of) const {
+    return of.element != 0 ? holds_doubles(module_.type(of.element))
+                           : of.kind == SpirvKind::floating && of.scalars == 2;
+  }
+  bool is_of_doubles(const SpirvInstruction& in, Words operands) const {
+    if (!module_.has_doubles) return false;
+    using enum SpirvOp;
+    // Words that only move.
+    for (const SpirvOp moves : {load, function_call, composite_construct, composite_extract,
+                                composite_insert, copy_object, phi}) {
+      if (in.op == moves) return false;
+    }
+    bool has_any = holds_doubles(module_.type(in.type));
+    for (const SpirvId id : operands) {
+      const bool is_value = types_.contains(id) || module_.constants.contains(id);
+      has_any = has_any || (is_value && holds_doubles(type_of(id)));
+    }
+    return has_any;
+  }
+  Doubles doubles_of(const Frame& frame, SpirvId id) const {
+    const Numbers& words = value(frame, id);
+    Doubles made;
+    if (!holds_doubles(type_of(id))) {
+      for (const std::uint32_t word : words) {
+        made.push_back(static_cast<double>(std::bit_cast<float>(word)));
+      }
+      return made;
+    }
+    for (std::size_t i = 0; i < words.size(); i += 2) {
+      made.push_back(std::bit_cast<double>(std::uint64_t{words[i + 1]} << 32 | words[i]));
+    }
+    return made;
+  }
+  static Numbers words_of(const Doubles& of) {
+    Numbers words;
+    for (const double x : of) {
+      const auto bits = std::bit_cast<std::uint64_t>(x);
+      words.push_back(static_cast<std::uint32_t>(bits));
+      words.push_back(static_cast<std::uint32_t>(bits >> 32));
+    }
+    return words;
+  }
+  static Numbers stable_words_of(Doubles of) {
+    for (double& x : of) {
+      if (std::isnan(x)) x = std::bit_cast<double>(0x7FF80000'00000000u);
+    }
+    return words_of(of);
+  }
+  static double dot_of(std::span<const double> a, std::span<const double> b) {
+    double sum = a[0] * b[0];
+    for (std::size_t i = 1; i < a.size(); ++i) sum += a[i] * b[i];
+    return sum;
+  }
+  static std::uint32_t signed_of(double x) {
+    return static_cast<std::uint32_t>(x > -0x1p31 - 1.0 && x < 0x1p31 ? static_cast<std::int32_t>(x)
+                                                                      : INT32_MIN);
+  }
+
+  Numbers of_doubles(Frame& frame, const SpirvInstruction& in, Words w) {
+    using enum SpirvOp;
+    const Doubles a = in.op == convert_signed_to_float || in.op == convert_unsigned_to_float ||
+                              in.op == SpirvOp::select || in.op == bitcast
+                          ? Doubles{}
+                          : doubles_of(frame, w[0]);
+    const auto b = [&](std::size_t i) { return doubles_of(frame, w[1])[i]; };
+    const auto each = [&](const auto& function) {
+      Doubles made;
+      for (std::size_t i = 0; i < a.size(); ++i) made.push_back(function(a[i], i));
+      return words_of(made);
+    };
+    const auto compare = [&](const auto& is) {
+      Numbers made;
+      for (std::size_t i = 0; i < a.size(); ++i) made.push_back(is(a[i], b(i)) ? ~0u : 0u);
+      return made;
+    };
+    Numbers words;
+    Doubles made;
+    switch (in.op) {
+      case float_negate: return each([](double x, std::size_t) { return -x; });
+      case float_add: return each([&](double x, std::size_t i) { return x + b(i); });
+      case float_sub: return each([&](double x, std::size_t i) { return x - b(i); });
+      case float_mul: return each([&](double x, std::size_t i) { return x * b(i); });
+      case float_div: return each([&](double x, std::size_t i) { return x / b(i); });
+      case float_mod:
+        return each([&](double x, std::size_t i) { return x - b(i) * std::floor(x / b(i)); });
+      case vector_times_scalar:
+      case matrix_times_scalar: return each([&](double x, std::size_t) { return x * b(0); });
+      case float_ord_equal: return compare([](double x, double y) { return x == y; });
+      case float_unord_not_equal: return compare([](double x, double y) { return !(x == y); });
+      case float_ord_less_than: return compare([](double x, double y) { return x < y; });
+      case float_ord_greater_than: return compare([](double x, double y) { return x > y; });
+      case float_ord_less_than_equal: return compare([](double x, double y) { return x <= y; });
+      case float_ord_greater_than_equal: return compare([](double x, double y) { return x >= y; });
+      case is_nan:
+        for (const double x : a) words.push_back(std::isnan(x) ? ~0u : 0u);
+        return words;
+      case is_inf:
+        for (const double x : a) words.push_back(std::isinf(x) ? ~0u : 0u);
+        return words;
+      case float_convert:
+        if (holds_doubles(module_.type(in.type))) return words_of(a);
+        for (const double x : a) words.push_back(bits_of(static_cast<float>(x)));
+        return words;
+      case convert_float_to_signed:
+        for (const double x : a) words.push_back(signed_of(x));
+        return words;
+      case convert_float_to_unsigned:
+        for (const double x : a) {
+          words.push_back(x < 0x1p31 ? signed_of(x) : signed_of(x - 0x1p31) ^ 0x80000000u);
+        }
+        return words;
+      case convert_signed_to_float:
+        for (const std::uint32_t x : value(frame, w[0])) {
+          made.push_back(std::bit_cast<std::int32_t>(x));
+        }
+        return words_of(made);
+      case convert_unsigned_to_float:
+        for (const std::uint32_t x : value(frame, w[0])) made.push_back(x);
+        return words_of(made);
+      case bitcast:
+        return holds_doubles(module_.type(in.type)) ? value(frame, w[0])
+                                                    : stable_words_of(doubles_of(frame, w[0]));
+      case SpirvOp::select: {
+        const Numbers& is = value(frame, w[0]);
+        Doubles yes = doubles_of(frame, w[1]);
+        for (std::size_t i = 0; i < yes.size(); ++i) {
+          if (is[is.size() == 1 ? 0 : i] == 0) yes[i] = doubles_of(frame, w[2])[i];
+        }
+        return words_of(yes);
+      }
+      case vector_shuffle: {
+        Doubles both = a;
+        for (const double x : doubles_of(frame, w[1])) both.push_back(x);
+        for (const std::uint32_t i : w.subspan(2)) made.push_back(i == ~0u ? 0.0 : both[i]);
+        return words_of(made);
+      }
+      case vector_extract_dynamic: {
+        const auto index = static_cast<std::int32_t>(value(frame, w[1])[0]);
+        return words_of({a[static_cast<std::size_t>(
+            std::clamp(index, 0, static_cast<std::int32_t>(a.size()) - 1))]});
+      }
+      case SpirvOp::dot: return words_of({dot_of(a, doubles_of(frame, w[1]))});
+      case transpose:
+      case matrix_times_vector:
+      case matrix_times_matrix: {
+        const std::size_t rows = rows_of(w[0]), inner = a.size() / rows;
+        Doubles turned;
+        for (std::size_t i = 0; i < a.size(); ++i) {
+          turned.push_back(a[i % inner * rows + i / inner]);
+        }
+        if (in.op == transpose) return words_of(turned);
+        const Doubles of_b = doubles_of(frame, w[1]);
+        for (std::size_t at = 0; at < of_b.size(); at += inner) {
+          for (std::size_t row = 0; row < rows; ++row) {
+            made.push_back(dot_of(std::span{turned}.subspan(row * inner, inner),
+                                  std::span{of_b}.subspan(at, inner)));
+          }
+        }
+        return words_of(made);
+      }
+      case ext_inst: return glsl_of_doubles(frame, in, w);
+      default:
+        throw ShaderError("the oracle has no instruction of doubles " +
+                          std::to_string(static_cast<int>(in.op)));
+    }
+  }
+
+  Numbers glsl_of_doubles(Frame& frame, const SpirvInstruction& in, Words w) {
+    using enum GlslOp;
+    const auto op = static_cast<GlslOp>(in.operands[1]);
+    if (op == pack_double_2x32) return value(frame, w[0]);
+    Doubles numbers = doubles_of(frame, w[0]);
+    if (op == unpack_double_2x32) return stable_words_of(numbers);
+    const auto of = [&](std::size_t operand, std::size_t i) {
+      return doubles_of(frame, w[operand])[i];
+    };
+    const auto least = [](double a, double b) { return std::isnan(a) || b < a ? b : a; };
+    const auto most = [](double a, double b) { return std::isnan(a) || a < b ? b : a; };
+    Numbers words;
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      double& x = numbers[i];
+      int exponent = 0;
+      switch (op) {
+        case round:
+        case round_even: x = std::nearbyint(x); break;
+        case trunc: x = std::trunc(x); break;
+        case float_abs: x = std::abs(x); break;
+        case float_sign: x = x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; break;
+        case floor: x = std::floor(x); break;
+        case ceil: x = std::ceil(x); break;
+        case fract: x = x - std::floor(x); break;
+        case sqrt: x = std::sqrt(x); break;
+        case inverse_sqrt: x = 1.0 / std::sqrt(x); break;
+        case float_min:
+        case number_min: x = least(x, of(1, i)); break;
+        case float_max:
+        case number_max: x = most(x, of(1, i)); break;
+        case float_clamp:
+        case number_clamp: x = least(most(x, of(1, i)), of(2, i)); break;
+        case float_mix: x = x * (1.0 - of(2, i)) + of(1, i) * of(2, i); break;
+        case step: x = of(1, i) < x ? 0.0 : 1.0; break;
+        case smooth_step: {
+          const double t = least(most((of(2, i) - x) / (of(1, i) - x), 0.0), 1.0);
+          x = (t * t) * (3.0 - 2.0 * t);
+          break;
+        }
+        case fma: x = x * of(1, i) + of(2, i); break;
+        case ldexp: x = std::ldexp(x, static_cast<int>(value(frame, w[1])[i])); break;
+        case frexp_struct:
+          x = std::frexp(x, &exponent);
+          words.push_back(static_cast<std::uint32_t>(exponent));
+          break;
+        default: break;
+      }
+    }
+    switch (op) {
+      case length: return words_of({std::sqrt(dot_of(numbers, numbers))});
+      case normalize: {
+        const double scale = 1.0 / std::sqrt(dot_of(numbers, numbers));
+        for (double& x : numbers) x *= scale;
+        return words_of(numbers);
+      }
+      case cross: {
+        const Doubles& a = numbers;
+        const Doubles b = doubles_of(frame, w[1]);
+        return words_of(
+            {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]});
+      }
+      case GlslOp::determinant:  // of 2x2
+        return words_of({numbers[0] * numbers[3] - numbers[1] * numbers[2]});
+      case frexp_struct: {
+        Numbers all = words_of(numbers);
+        all.insert(all.end(), words.begin(), words.end());
+        return all;
+      }
+      default: return words_of(numbers);
+    }
+  }
+
   Numbers made(Frame& frame, const SpirvInstruction& in) {
     const Words& w = in.operands;
     const auto of = [&](std::size_t i) -> const Numbers& { return value(frame, w[i]); };
     using enum SpirvOp;
+    const Words operands = in.op == ext_inst ? w.subspan(2) : w;
+    if (is_of_doubles(in, operands)) return of_doubles(frame, in, operands);
     if (const auto found = each_number().find(in.op); found != each_number().end()) {
       const auto& [op, swaps, turns] = found->second;
       Numbers numbers = of(0);

@@ -1,5 +1,10 @@
 #include "tools/crosscheck/cases.h"
 
+#include <algorithm>
+#include <array>
+#include <set>
+#include <string_view>
+
 #include "tools/gl/driver/api.h"
 
 namespace softfocus {
@@ -27,6 +32,22 @@ std::vector<Case> crosscheck_cases() {
   add_polygon_cases(cases);
   if (!kIsWebGl) add_relief_cases(cases);  // not tried there
   return cases;
+}
+
+std::vector<Case> quick_cases(bool few) {
+  constexpr std::array<std::string_view, 5> kBesides{
+      "kernel/box-in-four-reads-61x43", "bloom/odd-61x43-steady", "reprojection/forward-61x43",
+      "reprojection/refresh-61x43", "temporal/frame-reverse-filled"};
+  std::vector<Case> chosen;
+  std::set<std::string> stages;
+  for (Case& one : crosscheck_cases()) {
+    if (!one.quick) continue;
+    const bool is_first = stages.insert(one.stage).second;
+    const std::string name = one.stage + '/' + one.name;
+    const bool is_besides = std::find(kBesides.begin(), kBesides.end(), name) != kBesides.end();
+    if (!few || is_first || is_besides) chosen.push_back(std::move(one));
+  }
+  return chosen;
 }
 
 }  // namespace softfocus

@@ -31,11 +31,13 @@ struct Case {
   bool quick;     ///< part of --quick
   bool slow_too;  ///< small enough for a driver that is slow
   std::function<void(const Bench&, Tally&)> run;
-  bool needs_doubles = false;  ///< in shaders, which the emulated GPU does not have
 };
 
 /// All cases, in the order of the pipeline's stages.
 std::vector<Case> crosscheck_cases();
+/// The quick ones; if there are to be few, each shader's cheapest or so: the first of a stage, and
+/// what has shaders that it lacks.
+std::vector<Case> quick_cases(bool few);
 
 // One function a file.
 /// Of a pipeline's method: pass by pass, and the result. `stage` is its file's name.

@@ -282,7 +282,7 @@ std::string profile_name(const std::string& renderer) {
 }  // namespace
 
 // A browser's one driver is open already.
-#ifndef __EMSCRIPTEN__
+#ifndef SOFTFOCUS_WEBGL
 Probe probe_driver(const Driver& driver) {
   const GlContext gl{driver};
   ThreadPool pool{hardware_threads()};

@@ -21,8 +21,7 @@ std::vector<Case> chosen_cases(const std::string& pattern, const std::string& pi
   }
   for (Case& one : all) {
     const std::string name = one.stage + '/' + one.name;
-    const bool suits = driver == nullptr || ((one.slow_too || !driver->slow) &&
-                                             !(one.needs_doubles && driver->is_emulated));
+    const bool suits = driver == nullptr || one.slow_too || !driver->slow;
     const bool wanted = (one.quick || !quick) && suits;
     if (wanted && ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0) chosen.push_back(one);
   }

@@ -121,11 +121,9 @@ void add_shadow_map_cases(std::vector<Case>& cases) {
     std::string name = name_and_size(scene, width, height) + ' ' + std::to_string(settings.size);
     if (settings.kernel > 1) name += "-kernel" + std::to_string(settings.kernel);
     if (settings.cascades > 1) name += "-cascades" + std::to_string(settings.cascades);
-    cases.push_back({"shadow-map", name, quick, quick,
-                     [=](const Bench& bench, Tally& tally) {
+    cases.push_back({"shadow-map", name, quick, quick, [=](const Bench& bench, Tally& tally) {
                        map_both(bench, tally, scene, settings, width, height);
-                     },
-                     true});
+                     }});
   };
   for (const std::string scene : {"figures", "cube-room", "sphere-world"}) {
     add(scene, {.size = 64, .kernel = 3, .cascades = 2}, 97, 61, true);
@@ -167,11 +165,9 @@ void add_shadow_volume_cases(std::vector<Case>& cases) {
                        bool quick, bool slow_too) {
     const std::string name = name_and_size(scene, width, height) +
                              (count == VolumeCount::z_pass ? " z-pass" : " z-fail");
-    cases.push_back({"shadow-volume", name, quick, slow_too,
-                     [=](const Bench& bench, Tally& tally) {
+    cases.push_back({"shadow-volume", name, quick, slow_too, [=](const Bench& bench, Tally& tally) {
                        volumes_both(bench, tally, scene, count, width, height);
-                     },
-                     true});
+                     }});
   };
   for (const VolumeCount count : {VolumeCount::z_fail, VolumeCount::z_pass}) {
     add("near-fence", count, 65, 41, true, true);

@@ -233,7 +233,7 @@ GlTexture upload(const Texture& texture, const Sampler& sampler) {
       upload_slices(target, texture, level);
     }
   }
-#ifndef __EMSCRIPTEN__
+#ifndef SOFTFOCUS_WEBGL
   if (texture.shape == TextureShape::cube) glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
 #endif
   set_parameter(GL_TEXTURE_MAX_LEVEL, static_cast<GLint>(texture.levels.size()) - 1, target);

@@ -95,8 +95,7 @@ struct RecordedInLanes {
       corners[i] = recorded.vertex_stage(draw.indices[3 * triangle + i]);
     }
     to_window_triangles(
-        corners, kInterpolation, draw.state.provoking_vertex, draw.target.x_end, draw.target.y_end,
-        draw.profile,
+        corners, kInterpolation, draw.state.provoking_vertex, draw.target, draw.profile,
         [&](const std::array<WindowVertex, 3>& window, const std::array<Varyings<N>, 3>& varyings) {
           const auto used = [&](std::size_t i) { return std::span{varyings[i]}.first(count); };
           add_triangle(draw, chunk, window, {used(0), used(1), used(2)}, job.cull_unsnapped);

@@ -420,3 +420,29 @@ void main() {
   CHECK_THROWS_WITH_AS(finish(pass, pool),
                        "test.frag:6: a loop takes more turns than the budget of 1000", ShaderError);
 }
+
+TEST_CASE("a viewport is where clip space comes to lie, and nothing is drawn outside of it") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  ShaderDraw draw = draw_of(
+      "#version 330\nvoid main() { gl_Position = vec4(gl_VertexID == 1 ? 3 : -1,"
+      " gl_VertexID == 2 ? 3 : -1, 0, 1); }\n",
+      "#version 330\nout vec4 colour;\nvoid main() { colour = vec4(gl_FragCoord.xy, 0, 1); }\n");
+  draw.viewport = Rectangle{-3, 1, 2, 4};
+  Image image = make_image(Format::rgba32f, 5, 5);
+  RenderPass pass;
+  pass.targets.colour[0] = &image;
+  DrawState state;
+  state.cull = Cull::none;
+  state.depth.reset();
+  ThreadPool pool{1};
+  const std::vector<std::uint32_t> indices{0, 1, 2};
+  draw_shaders(pass, state, indices, 3, draw);
+  finish(pass, pool);
+  for (int y = 0; y < 5; ++y) {
+    for (int x = 0; x < 5; ++x) {
+      const bool is_inside = x < 2 && y >= 1 && y < 4;
+      const glm::vec4 place{static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, 0, 1};
+      CHECK(load_texel(image, x, y) == (is_inside ? place : glm::vec4{0.0f}));
+    }
+  }
+}

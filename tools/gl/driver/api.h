@@ -2,7 +2,7 @@
 // OpenGL's functions: those of the context that is current, and in a browser WebGL2's, which is
 // OpenGL ES 3.0 without what has no safe form.
 
-#ifdef __EMSCRIPTEN__
+#ifdef SOFTFOCUS_WEBGL
 #include <GLES3/gl3.h>
 
 namespace softfocus {

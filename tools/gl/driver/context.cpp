@@ -19,15 +19,18 @@ void set_defaults() {
 
 }  // namespace
 
-GlContext::GlContext(const Driver& driver, std::optional<int> threads, const Profile& profile) {
+GlContext::GlContext(const Driver& driver, std::optional<int> threads, const Profile& profile,
+                     const std::filesystem::path& spirv) {
   if (!driver.is_emulated) {
     open_by_egl(driver, threads);
   } else {
-    if (!missing_glsl().empty()) throw DriverError(std::string{missing_glsl()});
-    emulated_ = std::make_unique<EmulatedContext>(profile, threads.value_or(hardware_threads()));
+    if (spirv.empty() && !missing_glsl().empty()) throw DriverError(std::string{missing_glsl()});
+    emulated_ =
+        std::make_unique<EmulatedContext>(profile, threads.value_or(hardware_threads()), spirv);
     renderer_ = "softfocus";
     version_ = "4.5";
     shader_header_ = "#version 450 core\n";
+    has_doubles_ = true;
   }
   set_defaults();
 }

@@ -3,6 +3,7 @@
 // (egl_context.cpp), on the emulated GPU (context.cpp) or in a browser by WebGL2 (web_context.cpp).
 // No window, no default framebuffer: everything is drawn into textures.
 
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -22,11 +23,12 @@ class GlContext {
  public:
   /// Opens the driver, setting the environment in which it is found: only the first
   /// driver of a process counts. `threads` is for llvmpipe and the emulated GPU; without it, they
-  /// take all of the machine's. `profile` is what the emulated GPU draws by. Throws DriverError if
+  /// take all of the machine's. `profile` is what the emulated GPU draws by; `spirv` a folder that
+  /// it writes what it compiles to, and a build without glslang reads from. Throws DriverError if
   /// there is no EGL, no such driver, or if its GL is older than 3.3. In a browser there is one
   /// driver, whatever `driver` says.
   explicit GlContext(const Driver& driver, std::optional<int> threads = {},
-                     const Profile& profile = {});
+                     const Profile& profile = {}, const std::filesystem::path& spirv = {});
   ~GlContext();
   GlContext(const GlContext&) = delete;
   GlContext& operator=(const GlContext&) = delete;
@@ -52,7 +54,7 @@ class GlContext {
   bool is_lost() const;
 
  private:
-#ifdef __EMSCRIPTEN__
+#ifdef SOFTFOCUS_WEBGL
   int context_ = 0;
 #else
   void* display_ = nullptr;  // EGL's
@@ -66,14 +68,14 @@ class GlContext {
   std::string shader_header_;
   mutable std::map<std::string, unsigned> programs_;
 
-#ifndef __EMSCRIPTEN__
+#ifndef SOFTFOCUS_WEBGL
   void open_by_egl(const Driver& driver, std::optional<int> threads);
   bool open(void* display);
 #endif
   void close();
 };
 
-#ifndef __EMSCRIPTEN__
+#ifndef SOFTFOCUS_WEBGL
 inline bool GlContext::is_lost() const { return false; }
 #endif
 

@@ -9,7 +9,6 @@
 
 #include "raster/pipeline/render_pass.h"
 #include "raster/shaders/draw_shaders.h"
-#include "raster/shaders/glsl/glsl.h"
 #include "tools/gl/driver/driver.h"
 #include "tools/gl/emulated/emulated_gl.h"
 
@@ -126,13 +125,8 @@ ShaderProgram given_outputs(const std::vector<ShaderVarying>& varyings) {
             number + ";\n";
     body += "  gives" + number + " = given" + number + ";\n";
   }
-  const auto none = [](const std::string&) { return std::nullopt; };
-  const UserShader shader = make_shader(compile_glsl({.stage = ShaderStage::vertex,
-                                                      .name = "points",
-                                                      .text = head + body + "}\n",
-                                                      .convention = GlslConvention::plain},
-                                                     none)
-                                            .words);
+  const UserShader shader =
+      make_shader(emulated::spirv_of(ShaderStage::vertex, head + body + "}\n", "points"));
   return compile_shader(shader, shader.uniforms.words);
 }
 
@@ -207,9 +201,8 @@ void draw_listed_vertices(GLenum mode, const std::vector<std::uint32_t>& indices
                           std::uint32_t vertex_count) {
   EmulatedGl& gl = emulated::gl();
   const Rectangle area = target_area(bound_targets());
-  if (gl.viewport != std::array{0, 0, area.x_end, area.y_end}) {
-    throw DriverError("a viewport that is not the target; the whole target would be right");
-  }
+  const auto [x, y, width, height] = gl.viewport;
+  const bool is_whole = gl.viewport == std::array{0, 0, area.x_end, area.y_end};
   EmulatedProgram& program = emulated::program_in_use();
   auto& [vertex, fragment] = program.stages;
   const ShaderDraw draw{.vertex = compiled(vertex, true),
@@ -219,9 +212,13 @@ void draw_listed_vertices(GLenum mode, const std::vector<std::uint32_t>& indices
                         .attributes = given_attributes(),
                         .vertex_textures = textures_of(vertex),
                         .fragment_textures = textures_of(fragment),
-                        .clip_space = ShaderClipSpace::y_down};
-  if (mode == GL_POINTS) return draw_points(draw, vertex_count);
-  if (is_fullscreen(draw, vertex_count)) return run_over_targets(fragment, draw);
+                        .clip_space = ShaderClipSpace::y_down,
+                        .viewport = Rectangle{x, y, x + width, y + height}};
+  if (mode == GL_POINTS) {
+    if (is_whole) return draw_points(draw, vertex_count);
+    throw DriverError("points in a viewport that is not the target; the target would be right");
+  }
+  if (is_whole && is_fullscreen(draw, vertex_count)) return run_over_targets(fragment, draw);
   draw_triangles(draw, indices, vertex_count);
 }
 

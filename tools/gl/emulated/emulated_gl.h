@@ -3,11 +3,11 @@
 // are compiled and run as anybody's (raster/shaders), by a profile that is given. Row 0 of a
 // texture is OpenGL's lowest, so that nothing is turned over.
 //
-// Left out, and refused by an error: viewports other than the whole target, textures of whole
-// numbers, doubles in shaders.
+// Left out, and refused by an error: points in viewports other than the whole target.
 
 #include <array>
 #include <cstddef>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -53,8 +53,13 @@ struct EmulatedStage {
   UserShader shader{};                 ///< linked
   std::vector<std::uint32_t> uniforms{};
   std::vector<bool> is_late{};  ///< of the uniforms, all but the numbers of textures
-  /// By the uniforms that they were compiled for: all, or those that are not late.
-  std::map<std::vector<std::uint32_t>, std::shared_ptr<const ShaderProgram>> compiled[2]{};
+  struct Compiled {
+    std::vector<std::uint32_t> uniforms{};  ///< that it was compiled for
+    std::shared_ptr<const ShaderProgram> program{};
+  };
+  /// For all uniforms, and for those that are not late. Searched by ==: on big-endian machines
+  /// g++'s < of vectors of words looks at their first bytes alone.
+  std::vector<Compiled> compiled[2]{};
 };
 
 /// A uniform, from an element of an array on.
@@ -81,10 +86,12 @@ struct EmulatedAttribute {
 };
 
 struct EmulatedGl {
-  explicit EmulatedGl(const Profile& of, int threads) : profile(of), pool(threads) {}
+  EmulatedGl(const Profile& of, int threads, std::filesystem::path folder)
+      : profile(of), pool(threads), spirv(std::move(folder)) {}
 
   Profile profile;
   ThreadPool pool;
+  std::filesystem::path spirv;  ///< of what is compiled; empty: none is kept
   GLenum error = GL_NO_ERROR;
   GLuint last_name = 0;
 
@@ -112,7 +119,7 @@ struct EmulatedGl {
 /// Opened for the calls of this thread until it is destroyed.
 class EmulatedContext {
  public:
-  EmulatedContext(const Profile& profile, int threads);
+  EmulatedContext(const Profile& profile, int threads, const std::filesystem::path& spirv);
   ~EmulatedContext();
   EmulatedContext(const EmulatedContext&) = delete;
   EmulatedContext& operator=(const EmulatedContext&) = delete;
@@ -130,6 +137,9 @@ EmulatedGl& gl();
 EmulatedProgram& program_in_use();
 /// A stage for its uniforms as they are, or for any: then they are given as it runs, slower.
 std::shared_ptr<const ShaderProgram> compiled(EmulatedStage& stage, bool for_any);
+/// The SPIR-V of a text, by the name in its errors. Throws ShaderError.
+std::vector<std::uint32_t> spirv_of(ShaderStage stage, const std::string& text,
+                                    const std::string& name);
 /// The level of a texture that is attached, or null.
 Image* image_of(const EmulatedFramebuffer::Attached& attached);
 

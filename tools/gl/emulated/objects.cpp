@@ -33,6 +33,7 @@ std::optional<Format> format_of(GLenum internal) {
     case GL_RG16F: return Format::rg16f;
     case GL_R32F:
     case GL_DEPTH_COMPONENT32F: return Format::r32f;
+    case GL_RGBA32UI:  // bit by bit
     case GL_RGBA32F: return Format::rgba32f;
     default: return {};
   }
@@ -111,8 +112,9 @@ const GlFunctions*& current_gl() {
   return current;
 }
 
-EmulatedContext::EmulatedContext(const Profile& profile, int threads)
-    : gl_(std::make_unique<EmulatedGl>(profile, threads)) {
+EmulatedContext::EmulatedContext(const Profile& profile, int threads,
+                                 const std::filesystem::path& spirv)
+    : gl_(std::make_unique<EmulatedGl>(profile, threads, spirv)) {
   current_emulated() = gl_.get();
   current_gl() = &emulated_functions();
 }

@@ -4,8 +4,11 @@
 #include <bit>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 
+#include "raster/numbers/hash.h"
 #include "raster/shaders/glsl/glsl.h"
+#include "scenes/files/file_bytes.h"
 #include "tools/gl/emulated/emulated_gl.h"
 
 namespace softfocus {
@@ -96,14 +99,42 @@ std::shared_ptr<const ShaderProgram> emulated::compiled(EmulatedStage& stage, bo
   for (std::size_t i = 0; i < key.size() && for_any; ++i) {
     if (stage.is_late[i]) key[i] = 0;
   }
-  const auto found = known.find(key);
-  if (found != known.end()) return found->second;
+  for (const EmulatedStage::Compiled& one : known) {
+    if (one.uniforms == key) return one.program;
+  }
   if (known.size() == kMostKept) known.clear();
   const std::vector<bool> none;
   auto made = std::make_shared<const ShaderProgram>(
       compile_shader(stage.shader, stage.uniforms, for_any ? stage.is_late : none));
-  known.emplace(std::move(key), made);
+  known.push_back({std::move(key), made});
   return made;
+}
+
+std::vector<std::uint32_t> emulated::spirv_of(ShaderStage stage, const std::string& text,
+                                              const std::string& name) {
+  Hash hash;
+  add_to_hash(hash, static_cast<std::uint8_t>(stage));
+  for (const char c : text) add_to_hash(hash, static_cast<std::uint8_t>(c));
+  const std::filesystem::path file = gl().spirv / (std::to_string(hash.value) + ".spv");
+  if (!missing_glsl().empty()) {
+    if (!std::filesystem::exists(file)) {
+      throw ShaderError("a program with glslang has not written " + file.string());
+    }
+    const std::string bytes = read_file_bytes(file, sizeof(std::uint32_t) * kMostSpirvWords);
+    return spirv_words(std::as_bytes(std::span{bytes}));
+  }
+  std::vector<std::uint32_t> words =
+      compile_glsl(
+          {.stage = stage, .name = name, .text = text, .convention = GlslConvention::plain},
+          [](const std::string&) { return std::nullopt; })
+          .words;
+  if (!gl().spirv.empty()) {
+    std::filesystem::create_directories(gl().spirv);
+    std::ofstream{file, std::ios::binary}.write(
+        reinterpret_cast<const char*>(words.data()),
+        static_cast<std::streamsize>(words.size() * sizeof(std::uint32_t)));
+  }
+  return words;
 }
 
 // NOLINTBEGIN(readability-identifier-naming): OpenGL's names
@@ -127,12 +158,7 @@ void ShaderSource(GLuint shader, GLsizei count, const GLchar* const* texts,
 void CompileShader(GLuint name) {
   EmulatedShader& shader = gl().shaders[name];
   try {
-    shader.words = compile_glsl({.stage = shader.stage,
-                                 .name = "0",
-                                 .text = with_named_files(shader.text),
-                                 .convention = GlslConvention::plain},
-                                [](const std::string&) { return std::nullopt; })
-                       .words;
+    shader.words = spirv_of(shader.stage, with_named_files(shader.text), "0");
   } catch (const ShaderError& refused) {
     shader.log = refused.what();
     if (shader.log.starts_with(kFile)) shader.log.erase(0, 1);
