@@ -221,10 +221,8 @@ struct DriverMix {
 template <class Mix>
 class LevelFilter {
  public:
-  LevelFilter(const Texture& texture, const DecodedTexture* decoded, const Sampler& sampler,
-              const Profile& profile, Mix mix)
+  LevelFilter(const Texture& texture, const Sampler& sampler, const Profile& profile, Mix mix)
       : texture_(texture),
-        decoded_(decoded != nullptr && !decoded->texels.empty() ? decoded : nullptr),
         sampler_(sampler),
         profile_(profile),
         is_llvmpipe_(profile.texture_unit == TextureUnit::llvmpipe),
@@ -310,7 +308,6 @@ class LevelFilter {
 
  private:
   const Texture& texture_;
-  const DecodedTexture* decoded_;
   const Sampler& sampler_;
   const Profile& profile_;
   bool is_llvmpipe_;
@@ -330,16 +327,7 @@ class LevelFilter {
                         : standard_nearest(at, size, wrap);
   }
   glm::vec4 texel(int slice, std::size_t level, int x, int y) const {
-    if (decoded_ == nullptr) {
-      return fetch_texel(slice_level(texture_, slice, level), x, y, profile_);
-    }
-    const Image& image = texture_.levels[level];
-    const auto row = static_cast<std::size_t>(slice) * static_cast<std::size_t>(image.height) +
-                     static_cast<std::size_t>(y);
-    const float* at =
-        decoded_->texels.data() + decoded_->starts[level] +
-        4 * (row * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x));
-    return {at[0], at[1], at[2], at[3]};
+    return fetch_texel(slice_level(texture_, slice, level), x, y, profile_);
   }
 };
 
@@ -365,7 +353,7 @@ glm::vec4 filter_levels(const LevelFilter<Mix>& filter, const Texture& texture,
 }  // namespace
 
 glm::vec4 sample_sliced(const Texture& texture, const Sampler& sampler, glm::vec3 at, float lod,
-                        const Profile& profile, const DecodedTexture* decoded) {
+                        const Profile& profile) {
   if (texture.shape == TextureShape::array) {
     const int layer = nearest_layer(texture, at.z, profile);
     const Texture& flat =
@@ -373,7 +361,7 @@ glm::vec4 sample_sliced(const Texture& texture, const Sampler& sampler, glm::vec
     return sample(flat, sampler, {at.x, at.y}, lod, profile);
   }
   const auto filtered = [&](auto mix) {
-    const LevelFilter filter{texture, decoded, sampler, profile, mix};
+    const LevelFilter filter{texture, sampler, profile, mix};
     return filter_levels(filter, texture, sampler, at, lod);
   };
   if (profile.texture_unit == TextureUnit::standard) {

@@ -109,7 +109,7 @@ void sample_sliced_lane(const LaneSample& sample, const Lane& lane, const Shader
   }
   const glm::vec4 texel =
       sample_sliced(texture, from.sampler, place_of_slice(sample, lane, texture),
-                    level_of_slice(sample, lane, texture), *lane.frame.profile, from.decoded);
+                    level_of_slice(sample, lane, texture), *lane.frame.profile);
   if (sample.compared.is_there) {
     const bool passes = compare(from.compare, lane.number(sample.compared), texel.x);
     return lane.put(sample.to[0], passes ? 1.0f : 0.0f);

@@ -21,12 +21,13 @@ using namespace softfocus::test;
 
 namespace {
 
-UserShader slices_shader(const std::string& declared, const std::string& body) {
+UserShader slices_shader(const std::string& declared, const std::string& body,
+                         const std::string& array = "") {
   const GlslSource source{.name = "slices.frag",
                           .text =
                               "#version 450\nlayout(location = 0) in vec2 uv;\n"
                               "layout(location = 0) out vec4 result;\nuniform " +
-                              declared + " t;\nvoid main() {\n" + body + "\n}\n"};
+                              declared + " t" + array + ";\nvoid main() {\n" + body + "\n}\n"};
   return make_shader(compile_glsl(source, [](const std::string&) { return std::nullopt; }).words);
 }
 
@@ -188,6 +189,63 @@ TEST_CASE("shadow samplers of arrays and cubes compare the filtered texel") {
       slices_shader("samplerCubeShadow", "result = vec4(texture(t, vec4(0, 0, -1, uv.x)));"),
       {.texture = &cube, .compare = Compare::less},
       [](int x, int y) { return glm::vec4{uv_of(x, y).x < 0.625f ? 1.0f : 0.0f}; });
+}
+
+TEST_CASE(
+    "arrays, volumes and cubes have in lanes the bits that they have a lane after the other") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  // A texture whose number varies is read a lane after the other. Some places are NaN or infinite,
+  // and some lanes are elsewhere.
+  const std::string place =
+      "ivec2 p = ivec2(gl_FragCoord.xy);\n"
+      "vec3 at = vec3(uv.x * 7.0 - 3.0, uv.y * 3.0 - 1.0, uv.x - uv.y);\n"
+      "if (p.x % 11 == 3) at[p.y % 3] = 1.0 / float(p.x % 2) * (p.y > 2 ? -1.0 : 1.0);\n"
+      "if (p.x % 13 == 5) at[p.y % 3] *= 0.0 / float(p.x % 2);\n"
+      "result = vec4(9.0);\nint i = NUMBER;\n";
+  for (const TextureShape shape : {TextureShape::array, TextureShape::volume, TextureShape::cube}) {
+    const std::string sampler{sampler_name(shape)};
+    const bool is_cube = shape == TextureShape::cube;
+    const Texture texture = slices_of_noise(shape, 16, is_cube ? 6 : 9);
+    const std::string gradients = shape == TextureShape::array ? "vec2(uv.x, 0.3), vec2(0.2)"
+                                                               : "vec3(uv.x, 0.3, 0.1), vec3(0.2)";
+    std::vector<std::string> reads{"texture(t[i], at)", "texture(t[i], at, 1.5)",
+                                   "textureLod(t[i], at, uv.x * 6.0 - 1.0)",
+                                   "textureGrad(t[i], at, " + gradients + ")"};
+    if (!is_cube) {
+      const std::string offset = shape == TextureShape::array ? "ivec2(2, -1)" : "ivec3(2, -1, 3)";
+      reads.push_back("textureOffset(t[i], at, " + offset + ")");
+      reads.push_back("texelFetch(t[i], ivec3(p.x - 3, p.y - 1, p.x % 11 - 1), 0)");
+      reads.push_back("texelFetch(t[i], ivec3(p.x % 9, p.y, p.x % 11 - 1), p.y)");
+    }
+    for (const std::string& read : reads) {
+      const auto drawn = [&](const std::string& number, const Profile& profile, Isa isa) {
+        std::string text = place;
+        text.replace(text.find("NUMBER"), 6, number);
+        const UserShader shader = slices_shader(
+            sampler, text + "if ((p.x ^ p.y) % 5 != 4) result = " + read + ";\n", "[2]");
+        const ShaderTexture one{.texture = &texture,
+                                .sampler = {Filter::trilinear, Wrap::repeat, Wrap::mirrored_repeat,
+                                            Wrap::clamp_to_edge}};
+        const std::array<ShaderTexture, 2> both{one, one};
+        Image found = make_image(Format::rgba32f, kSlicesWidth, kSlicesHeight);
+        const ImageView view = found;
+        ThreadPool pool{1, isa};
+        run_shader(compile_shader(shader, shader.uniforms.words),
+                   {.textures = both, .targets = {&view, 1}, .profile = profile}, pool);
+        return found;
+      };
+      for (const NamedProfile& known : profiles()) {
+        const Image expected = drawn("p.x & 1", known.profile, Isa::scalar);
+        for (const Isa isa : available_isas()) {
+          CAPTURE(sampler);
+          CAPTURE(read);
+          CAPTURE(known.name);
+          CAPTURE(isa_name(isa));
+          CHECK(first_difference(drawn("0", known.profile, isa), expected) == "");
+        }
+      }
+    }
+  }
 }
 
 TEST_CASE("textures of another shape than the shader's, and samplers that are none, are refused") {
