@@ -3,6 +3,9 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
@@ -171,6 +174,57 @@ TEST_CASE("texelFetch, textureSize and gathers reach every slice, and 0 lies bey
                 load_texel(array.behind[2].levels[0], 3, 3).y}));
 }
 
+TEST_CASE("gathers of a cube go on on the next face, and beyond a corner lies the others' mean") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const Texture cube = slices_of_noise(TextureShape::cube, 8, 6);
+  const UserShader shader =
+      slices_shader("samplerCube",
+                    "result = textureGather(t, vec3(uv * 2.6 - 1.3, uv.x < 0.5 ? 1.0 : -1.0), 2);");
+  check_slices(shader, {.texture = &cube}, [&](int x, int y) {
+    const glm::vec2 uv = uv_of(x, y);
+    const CubePlace place = cube_place({uv * 2.6f - 1.3f, uv.x < 0.5f ? 1.0f : -1.0f});
+    const auto first = [](float u) { return static_cast<int>(std::floor(u * 8.0f - 0.5f)); };
+    const int u = first(place.at.x), v = first(place.at.y);
+    const auto channel = [&](int column, int row) {
+      const CubeTexel at = oracle_cube_texel({place.face, column, row}, 8);
+      return load_texel(slice_level(cube, at.face, 0), at.x, at.y).z;
+    };
+    const std::array<glm::ivec2, 4> four{{{u, v}, {u + 1, v}, {u, v + 1}, {u + 1, v + 1}}};
+    const auto value = [&](int i) {
+      const auto is_beyond = [](int of) { return of < 0 || of > 7; };
+      const glm::ivec2 own = four[static_cast<std::size_t>(i)];
+      if (!is_beyond(own.x) || !is_beyond(own.y)) return channel(own.x, own.y);
+      std::vector<float> others;
+      for (const glm::ivec2 other : four) {
+        if (other != own) others.push_back(channel(other.x, other.y));
+      }
+      return ((others[0] + others[1]) + others[2]) * (1.0f / 3.0f);
+    };
+    return glm::vec4{value(2), value(3), value(1), value(0)};
+  });
+}
+
+TEST_CASE("textureQueryLod of a volume and a cube gives the level that texture() takes") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const Texture volume = slices_of_noise(TextureShape::volume, 16, 8);
+  const Texture cube = slices_of_noise(TextureShape::cube, 16, 6);
+  for (const Texture* texture : {&volume, &cube}) {
+    const UserShader shader = slices_shader(
+        std::string{sampler_name(texture->shape)},
+        "vec3 at = vec3(uv, 1.25) * 4.0; result = vec4(textureQueryLod(t, at), 0.0, 0.0);");
+    check_slices(shader, {.texture = texture}, [&](int x, int y) {
+      const auto place = [](int column, int row) {
+        return glm::vec3{uv_of(column, row), 1.25f} * 4.0f;
+      };
+      const int column = x & ~1, row = y & ~1;
+      const glm::vec3 at = place(column, row);
+      const float lod = sliced_level_of_detail(*texture, at, place(column + 1, row) - at,
+                                               place(column, row + 1) - at, {});
+      return glm::vec4{std::clamp(lod, 0.0f, 4.0f), lod, 0.0f, 0.0f};
+    });
+  }
+}
+
 TEST_CASE("shadow samplers of arrays and cubes compare the filtered texel") {
   if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
   std::vector<Image> layers;
@@ -259,7 +313,4 @@ TEST_CASE("textures of another shape than the shader's, and samplers that are no
         "slices.frag:6: samplerCubeArray is not supported; samplerCube and sampler2DArray are");
   CHECK(refusal_of("sampler1DArray", "result = texture(t, uv);") ==
         "slices.frag:6: sampler1DArray is not supported; sampler2DArray is");
-  CHECK(
-      refusal_of("samplerCube", "result = textureGather(t, vec3(uv, 1.0));") ==
-      "slices.frag:6: textureGather of a samplerCube is not supported; of a sampler2DArray it is");
 }
