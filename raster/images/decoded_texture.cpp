@@ -20,11 +20,19 @@ bool is_8_bit(Format format) {
 
 // Whether texels keep whole numbers, which are scaled after they are filtered. llvmpipe filters
 // them in integers with most samplers.
-bool stay_whole(Format format, const Profile& profile) {
+bool stay_whole(const Texture& texture, const Profile& profile) {
+  const Format format = texture.levels[0].format;
+  const bool is_llvmpipe = profile.texture_unit == TextureUnit::llvmpipe;
+  switch (texture.shape) {
+    case TextureShape::cube: return false;
+    case TextureShape::volume:
+      if (!is_llvmpipe) return false;
+      break;
+    default: break;
+  }
   if (profile.texture_unit == TextureUnit::swiftshader) return is_8_bit(format);
-  const bool may_be =
-      profile.texture_unit == TextureUnit::llvmpipe || has_integer_filter(format, profile);
-  return may_be && (format == Format::r8 || format == Format::rgba8);
+  return (is_llvmpipe || has_integer_filter(format, profile)) &&
+         (format == Format::r8 || format == Format::rgba8);
 }
 
 // What fetch_texel() makes of each byte, in colours and in alpha.
@@ -72,8 +80,9 @@ Codes codes_for(Format format, bool are_whole, const Profile& profile) {
                                                           : codes_as_they_are();
 }
 
-void decode_8_bit(const Image& image, const Codes& codes, float* to) {
-  for (int y = 0; y < image.height; ++y) {
+/// Rows end with `gap` floats that are not written.
+void decode_8_bit(const Image& image, const Codes& codes, std::size_t gap, float* to) {
+  for (int y = 0; y < image.height; ++y, to += gap) {
     const auto bytes = row<std::uint8_t>(image, y);
     if (image.format == Format::r8) {
       for (const std::uint8_t byte : bytes) {
@@ -93,16 +102,16 @@ void decode_8_bit(const Image& image, const Codes& codes, float* to) {
   }
 }
 
-void decode_floats(const Image& image, Isa isa, float* to) {
+void decode_floats(const Image& image, Isa isa, std::size_t gap, float* to) {
   if (image.format == Format::rgba16f && isa != Isa::scalar) {
     const std::size_t count = 4 * static_cast<std::size_t>(image.width);
     for (int y = 0; y < image.height; ++y) {
       decode_halves(isa, row<std::uint16_t>(image, y).data(), count, to);
-      to += count;
+      to += count + gap;
     }
     return;
   }
-  for (int y = 0; y < image.height; ++y) {
+  for (int y = 0; y < image.height; ++y, to += gap) {
     for (int x = 0; x < image.width; ++x) {
       const glm::vec4 texel = load_texel(image, x, y);
       for (int i = 0; i < 4; ++i) *to++ = texel[i];
@@ -124,8 +133,42 @@ void add_level(DecodedAxis& axis, std::size_t level, int size) {
   if (level == 0) axis.base_is_power_of_two = is_power_of_two;
 }
 
-std::size_t texel_floats(const Image& image) {
-  return 4 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+/// Texels that a row or column has besides its image's.
+int border_of(const Texture& texture) { return texture.shape == TextureShape::cube ? 2 : 0; }
+
+std::size_t texel_floats(const Image& image, int border) {
+  return 4 * static_cast<std::size_t>(image.width + border) *
+         static_cast<std::size_t>(image.height + border);
+}
+
+/// What lies round the faces of a cube's level; `texels` of the first face.
+void decode_borders(float* texels, int size) {
+  const std::ptrdiff_t row = 4 * (static_cast<std::ptrdiff_t>(size) + 2), face = row * (size + 2);
+  const auto at = [&](const CubeTexel& of) {
+    return texels + of.face * face + of.y * row + 4 * static_cast<std::ptrdiff_t>(of.x);
+  };
+  for (int number = 0; number < 6; ++number) {
+    for (int i = 0; i < size; ++i) {
+      for (const CubeTexel& to : {CubeTexel{number, -1, i}, CubeTexel{number, size, i},
+                                  CubeTexel{number, i, -1}, CubeTexel{number, i, size}}) {
+        std::copy_n(at(cube_texel(to, size)), 4, at(to));
+      }
+    }
+  }
+  for (int corner = 0; corner < 24; ++corner) {
+    const CubeTexel to{corner / 4, corner % 2 == 0 ? -1 : size, corner % 4 < 2 ? -1 : size};
+    const int left = std::min(to.x, size - 1), upper = std::min(to.y, size - 1);
+    std::array<const float*, 4> four{};
+    std::size_t count = 0;
+    for (const int y : {upper, upper + 1}) {
+      for (const int x : {left, left + 1}) {
+        if (x != to.x || y != to.y) four[count++] = at({to.face, x, y});
+      }
+    }
+    for (int i = 0; i < 4; ++i) {
+      at(to)[i] = ((four[0][i] + four[1][i]) + four[2][i]) * (1.0f / 3.0f);
+    }
+  }
 }
 
 }  // namespace
@@ -135,44 +178,83 @@ DecodedTexture decode_texture(const Texture& texture, const Profile& profile, Is
   DecodedTexture decoded;
   decoded.source = &texture;
   decoded.level_count = static_cast<int>(texture.levels.size());
-  if (profile.texture_unit == TextureUnit::softpipe || texture.levels.size() > kMaxDecodedLevels) {
-    return decoded;
-  }
-  const bool is_flat = texture.shape == TextureShape::flat;
-  if (!is_flat && flushes_texels(texture.levels[0].format, profile)) return decoded;
+  const bool has_own_filter =
+      texture.shape == TextureShape::flat || texture.shape == TextureShape::array;
+  if (has_own_filter && profile.texture_unit == TextureUnit::softpipe) return decoded;
+  if (texture.levels.size() > kMaxDecodedLevels) return decoded;
+  const int border = border_of(texture);
   std::size_t floats = 0;
   for (std::size_t i = 0; i < texture.levels.size(); ++i) {
     const Image& image = texture.levels[i];
-    decoded.starts[i] = static_cast<std::int32_t>(floats);
+    // A cube's first texel lies behind a row and a texel of its border.
+    decoded.starts[i] =
+        static_cast<std::int32_t>(floats) + (border > 0 ? 4 * (image.width + 3) : 0);
     add_level(decoded.u, i, image.width);
     add_level(decoded.v, i, image.height);
-    floats += texel_floats(image) * static_cast<std::size_t>(slice_count(texture, i));
+    add_level(decoded.w, i, slice_count(texture, i));
+    floats += texel_floats(image, border) * static_cast<std::size_t>(slice_count(texture, i));
   }
   if (floats > std::numeric_limits<std::int32_t>::max()) return decoded;
   decoded.texels.resize(floats);
 
   const Format format = texture.levels[0].format;
-  decoded.are_whole = is_flat && stay_whole(format, profile);
+  decoded.are_whole = stay_whole(texture, profile);
   const Codes codes = is_8_bit(format) ? codes_for(format, decoded.are_whole, profile) : Codes{};
   for (std::size_t i = 0; i < texture.levels.size(); ++i) {
     float* to = decoded.texels.data() + decoded.starts[i];
     for (int slice = 0; slice < slice_count(texture, i); ++slice) {
       const Image& image = slice_level(texture, slice, i);
+      const std::size_t gap = 4 * static_cast<std::size_t>(border);
       if (is_8_bit(format)) {
-        decode_8_bit(image, codes, to);
+        decode_8_bit(image, codes, gap, to);
       } else {
-        decode_floats(image, isa, to);
+        decode_floats(image, isa, gap, to);
       }
-      to += texel_floats(image);
+      to += texel_floats(image, border);
+    }
+    if (border > 0) {
+      decode_borders(decoded.texels.data() + decoded.starts[i], texture.levels[i].width);
     }
   }
   return decoded;
 }
 
+namespace {
+
+/// Of volumes and cubes, which no unit but llvmpipe's filters in a way of its own.
+LaneArithmetic slice_arithmetic(const Texture& texture, const Sampler& sampler,
+                                const Profile& profile) {
+  const bool is_fused = profile.lerp == Contraction::fused;
+  const bool has_fixed_weights = profile.bilinear_weights == BilinearWeights::fixed_8;
+  const bool flushes = profile.denormals == Denormals::flush;
+  if (profile.texture_unit == TextureUnit::llvmpipe) {
+    if (!flushes || has_fixed_weights) return LaneArithmetic::by_sample;
+    const auto in_floats =
+        is_fused ? LaneArithmetic::llvmpipe_fused : LaneArithmetic::llvmpipe_unfused;
+    if (sampler.filter == Filter::nearest || !stay_whole(texture, profile)) return in_floats;
+    return is_filtered_in_integers(texture.levels[0].format, sampler) &&
+                   sampler.wrap_w != Wrap::mirrored_repeat
+               ? LaneArithmetic::llvmpipe_integers
+               : LaneArithmetic::by_sample;
+  }
+  if (is_fused) return LaneArithmetic::by_sample;
+  if (profile.texture_unit != TextureUnit::standard && flushes) {
+    return has_fixed_weights ? LaneArithmetic::by_sample : LaneArithmetic::standard_flushed;
+  }
+  return has_fixed_weights ? LaneArithmetic::standard_fixed_8 : LaneArithmetic::standard;
+}
+
+}  // namespace
+
 LaneArithmetic lane_arithmetic(const DecodedTexture& texture, const Sampler& sampler,
                                const Profile& profile) {
   if (texture.texels.empty()) return LaneArithmetic::by_sample;
   const Format format = texture.source->levels[0].format;
+  const TextureShape shape = texture.source->shape;
+  if (shape == TextureShape::volume || shape == TextureShape::cube) {
+    return flushes_texels(format, profile) ? LaneArithmetic::by_sample
+                                           : slice_arithmetic(*texture.source, sampler, profile);
+  }
   const bool fused = profile.lerp == Contraction::fused;
   if (profile.texture_unit == TextureUnit::standard) {
     if (fused) return LaneArithmetic::by_sample;

@@ -41,7 +41,10 @@ struct DecodedTexture {
   /// 65280. to_linear() comes after the filter then.
   bool are_whole = false;
   DecodedAxis u, v;
-  /// Where each level's texels start in `texels`, in floats. Rows lie without gaps.
+  DecodedAxis w;  ///< of a volume's slices
+  /// Where each level's texels start in `texels`, in floats. Rows lie without gaps, and so do
+  /// slices. Faces of a cube have a border of one texel, which lies before their first: what is
+  /// beyond an edge or a corner (sliced_texture.h).
   alignas(64) std::array<std::int32_t, kMaxDecodedLevels> starts{};
   /// Red, green, blue and alpha of each texel, from fetch_texel() or as `are_whole` says. Empty
   /// if only sample() will do: for softpipe, more than kMaxDecodedLevels levels, or 2^31 floats.
@@ -61,6 +64,7 @@ enum class LaneArithmetic : std::uint8_t {
   standard,           ///< the standard unit: binary32 weights, unfused
   standard_fixed_8,   ///< the standard unit with 8-bit weights
   standard_integers,  ///< the standard unit's integer filter, of bytes
+  standard_flushed,   ///< SwiftShader's volumes and cubes: as `standard`, and floats are flushed
   llvmpipe_fused,     ///< llvmpipe's float filter
   llvmpipe_unfused,   ///< llvmpipe's float filter, unfused
   llvmpipe_integers,  ///< llvmpipe's filter in 8-bit integers
@@ -76,9 +80,11 @@ struct SamplePoints {
   const float* u;
   const float* v;
   const float* lod;
+  const float* w = nullptr;  ///< of a texture that is not flat
 };
 
-/// sample_lanes() of a unit with vectors; `colours`: RgbaLanes of that unit.
+/// sample_lanes() of a unit with vectors, sample_sliced() of a texture that is not flat; `colours`:
+/// RgbaLanes of that unit.
 void sample_vectors(Isa isa, const DecodedTexture& texture, const Sampler& sampler,
                     const Profile& profile, const SamplePoints& points, int count, void* colours);
 

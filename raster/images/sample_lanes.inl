@@ -19,12 +19,20 @@ SOFTFOCUS_INLINE Floats largest_square(const DecodedTexture& texture, Floats du_
   return larger(s_x * s_x + t_x * t_x, s_y * s_y + t_y * t_y);
 }
 
+SOFTFOCUS_INLINE Floats log2_linear(Floats x) {
+  const Bits bits = as_bits(x);
+  const Floats mantissa = as_floats((bits & 0x007FFFFFu) | 0x3F800000u);
+  return to_floats(as_ints(bits >> 23 & 0xFFu) - 128) + mantissa;
+}
+
+SOFTFOCUS_INLINE Floats log2_of_root_by_bits(Floats x) {
+  return (to_floats(as_ints(as_bits(x * x))) - 0x1.FCp+29f) * 0x1p-25f;
+}
+
 /// level_of_detail() of the standard unit and llvmpipe.
 SOFTFOCUS_INLINE Floats level_of_detail_lanes(const DecodedTexture& texture, Floats du_dx,
                                               Floats dv_dx, Floats du_dy, Floats dv_dy) {
-  const Bits bits = as_bits(largest_square(texture, du_dx, dv_dx, du_dy, dv_dy));
-  const Floats mantissa = as_floats((bits & 0x007FFFFFu) | 0x3F800000u);
-  return 0.5f * (to_floats(as_ints(bits >> 23 & 0xFFu) - 128) + mantissa);
+  return 0.5f * log2_linear(largest_square(texture, du_dx, dv_dx, du_dy, dv_dy));
 }
 
 /// level_of_detail() itself, lane by lane.
@@ -42,8 +50,7 @@ SOFTFOCUS_INLINE Floats level_of_detail_lanes(const DecodedTexture& texture, con
                                               Floats du_dx, Floats dv_dx, Floats du_dy,
                                               Floats dv_dy) {
   if (profile.texture_unit == TextureUnit::swiftshader) {
-    const Floats square = largest_square(texture, du_dx, dv_dx, du_dy, dv_dy);
-    return (to_floats(as_ints(as_bits(square * square))) - 0x1.FCp+29f) * 0x1p-25f;
+    return log2_of_root_by_bits(largest_square(texture, du_dx, dv_dx, du_dy, dv_dy));
   }
   if (profile.texture_unit != TextureUnit::softpipe) {
     return level_of_detail_lanes(texture, du_dx, dv_dx, du_dy, dv_dy);

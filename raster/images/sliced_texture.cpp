@@ -194,6 +194,26 @@ CubeTexel cube_texel(const CubeTexel& at, int size) {
   return {face, index(to.s_sign * part(to.s)), index(to.t_sign * part(to.t))};
 }
 
+glm::vec4 fetch_cube_texel(const Texture& texture, const CubeTexel& at, std::size_t level,
+                           const Profile& profile) {
+  const int size = texture.levels[level].width;
+  const auto of_face = [&](int x, int y) {
+    const CubeTexel found = cube_texel({at.face, x, y}, size);
+    return fetch_texel(slice_level(texture, found.face, level), found.x, found.y, profile);
+  };
+  const auto is_outside = [&](int i) { return i < 0 || i >= size; };
+  if (!is_outside(at.x) || !is_outside(at.y)) return of_face(at.x, at.y);
+  const int left = std::min(at.x, size - 1), upper = std::min(at.y, size - 1);
+  std::array<glm::vec4, 3> others{};
+  std::size_t count = 0;
+  for (const int y : {upper, upper + 1}) {
+    for (const int x : {left, left + 1}) {
+      if (x != at.x || y != at.y) others[count++] = of_face(x, y);
+    }
+  }
+  return ((others[0] + others[1]) + others[2]) * (1.0f / 3.0f);
+}
+
 // --- sampling ---
 
 int nearest_layer(const Texture& texture, float at, const Profile& profile) {
@@ -221,10 +241,8 @@ struct DriverMix {
 template <class Mix>
 class LevelFilter {
  public:
-  LevelFilter(const Texture& texture, const DecodedTexture* decoded, const Sampler& sampler,
-              const Profile& profile, Mix mix)
+  LevelFilter(const Texture& texture, const Sampler& sampler, const Profile& profile, Mix mix)
       : texture_(texture),
-        decoded_(decoded != nullptr && !decoded->texels.empty() ? decoded : nullptr),
         sampler_(sampler),
         profile_(profile),
         is_llvmpipe_(profile.texture_unit == TextureUnit::llvmpipe),
@@ -281,27 +299,12 @@ class LevelFilter {
       const int index = static_cast<int>(base);
       return Taps{index, index + 1, position - base};
     };
-    const Taps u = face_taps(place.at.x), v = face_taps(place.at.y);
-    const auto is_outside = [&](int i) { return i < 0 || i >= size; };
-    const auto of_face = [&](int x, int y) {
-      const CubeTexel at = cube_texel({place.face, x, y}, size);
-      return texel(at.face, level, at.x, at.y);
-    };
-    const auto load = [&](int x, int y) {
-      if (!is_outside(x) || !is_outside(y)) return of_face(x, y);
-      glm::vec4 sum{0.0f};
-      bool is_first = true;
-      for (const int row : {v.first, v.second}) {
-        for (const int column : {u.first, u.second}) {
-          if (column == x && row == y) continue;
-          const glm::vec4 one = of_face(column, row);
-          sum = is_first ? one : sum + one;
-          is_first = false;
-        }
-      }
-      return sum * (1.0f / 3.0f);
-    };
-    return filter_bilinear(u, v, load, mix_);
+    return filter_bilinear(
+        face_taps(place.at.x), face_taps(place.at.y),
+        [&](int x, int y) {
+          return fetch_cube_texel(texture_, {place.face, x, y}, level, profile_);
+        },
+        mix_);
   }
 
   glm::vec4 mix_levels(glm::vec4 fine, glm::vec4 coarse, float weight) const {
@@ -310,7 +313,6 @@ class LevelFilter {
 
  private:
   const Texture& texture_;
-  const DecodedTexture* decoded_;
   const Sampler& sampler_;
   const Profile& profile_;
   bool is_llvmpipe_;
@@ -330,16 +332,7 @@ class LevelFilter {
                         : standard_nearest(at, size, wrap);
   }
   glm::vec4 texel(int slice, std::size_t level, int x, int y) const {
-    if (decoded_ == nullptr) {
-      return fetch_texel(slice_level(texture_, slice, level), x, y, profile_);
-    }
-    const Image& image = texture_.levels[level];
-    const auto row = static_cast<std::size_t>(slice) * static_cast<std::size_t>(image.height) +
-                     static_cast<std::size_t>(y);
-    const float* at =
-        decoded_->texels.data() + decoded_->starts[level] +
-        4 * (row * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x));
-    return {at[0], at[1], at[2], at[3]};
+    return fetch_texel(slice_level(texture_, slice, level), x, y, profile_);
   }
 };
 
@@ -365,7 +358,7 @@ glm::vec4 filter_levels(const LevelFilter<Mix>& filter, const Texture& texture,
 }  // namespace
 
 glm::vec4 sample_sliced(const Texture& texture, const Sampler& sampler, glm::vec3 at, float lod,
-                        const Profile& profile, const DecodedTexture* decoded) {
+                        const Profile& profile) {
   if (texture.shape == TextureShape::array) {
     const int layer = nearest_layer(texture, at.z, profile);
     const Texture& flat =
@@ -373,7 +366,7 @@ glm::vec4 sample_sliced(const Texture& texture, const Sampler& sampler, glm::vec
     return sample(flat, sampler, {at.x, at.y}, lod, profile);
   }
   const auto filtered = [&](auto mix) {
-    const LevelFilter filter{texture, decoded, sampler, profile, mix};
+    const LevelFilter filter{texture, sampler, profile, mix};
     return filter_levels(filter, texture, sampler, at, lod);
   };
   if (profile.texture_unit == TextureUnit::standard) {

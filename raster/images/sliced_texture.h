@@ -11,7 +11,6 @@
 #include <string_view>
 #include <vector>
 
-#include "raster/images/decoded_texture.h"
 #include "raster/images/sampler.h"
 #include "raster/numbers/profile.h"
 
@@ -68,15 +67,19 @@ struct CubeTexel {
 };
 CubeTexel cube_texel(const CubeTexel& at, int size);
 
+/// The value of a texel of a level, or beyond its edges or corners: beyond a corner lies
+/// ((a + b) + c) * (1/3) of the other three texels round it, the upper row first.
+glm::vec4 fetch_cube_texel(const Texture& texture, const CubeTexel& at, std::size_t level,
+                           const Profile& profile);
+
 /// Where a texture that is not flat is sampled: u, v and a layer, which is rounded to nearest, ties
 /// to even, and clamped; u, v, w; or a direction.
 ///
 /// A volume is filtered in two slices, and `lerp` mixes them; then the levels are mixed. A cube has
-/// no wraps: beyond an edge lies the next face, and beyond a corner ((a + b) + c) * (1/3) of the
-/// corner's other three texels. Both are filtered in floats, but bytes of volumes by llvmpipe.
-/// `decoded`: of the texture for the profile, for speed; or null.
+/// no wraps: beyond an edge lies fetch_cube_texel(). Both are filtered in floats, but bytes of
+/// volumes by llvmpipe. sample_vectors() (decoded_texture.h) does so in lanes.
 glm::vec4 sample_sliced(const Texture& texture, const Sampler& sampler, glm::vec3 at, float lod,
-                        const Profile& profile, const DecodedTexture* decoded = nullptr);
+                        const Profile& profile);
 
 /// level_of_detail() of what is not flat. Of a volume r, the difference of w times its slices, is a
 /// third part: (s s + t t) + r r. Of a cube's direction d with the main part m, the parts on the

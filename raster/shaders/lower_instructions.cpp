@@ -502,9 +502,6 @@ Scalars Lowering::sample_result(Call& call, const SpirvInstruction& in, ShaderRe
   if (of->is_arrayed && of->dim != SpirvDim::two) {
     refuse("sampler1DArray is not supported; sampler2DArray is");
   }
-  if (of->dim == SpirvDim::cube && (in.op == image_gather || in.op == image_dref_gather)) {
-    refuse("textureGather of a samplerCube is not supported; of a sampler2DArray it is");
-  }
 
   ShaderSample sample{.dim = of->dim,
                       .shape = texture_shape(*of),

@@ -45,5 +45,8 @@ void sample_sliced_lane(const LaneSample& sample, const Lane& lane, const Shader
 /// One channel of the four texels round a place of an image, or whether they pass.
 void gather_texels(const LaneSample& sample, const Lane& lane, const ShaderTexture& from,
                    const Image& image, glm::vec2 at);
+/// The same of the four round a direction, on level 0 of a cube.
+void gather_cube_texels(const LaneSample& sample, const Lane& lane, const ShaderTexture& from,
+                        glm::vec3 direction);
 
 }  // namespace softfocus

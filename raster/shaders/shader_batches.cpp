@@ -53,7 +53,7 @@ void ShaderBatches::check_shapes() const {
   }
 }
 
-/// For what filters texels, or fetches others than halves: it reads them as floats.
+/// For what filters texels, or fetches others than flat textures' halves: it reads them as floats.
 void ShaderBatches::decode_textures() {
   bool filters = false, fetches = false;
   for (const ShaderSampleRegisters& of : program_.samples) {
@@ -65,7 +65,8 @@ void ShaderBatches::decode_textures() {
   decoded_.reserve(textures_.size());
   for (ShaderTexture& of : textures_) {
     if (of.texture == nullptr || of.decoded != nullptr) continue;
-    const bool is_half = of.texture->levels[0].format == Format::rgba16f;
+    const bool is_half =
+        of.texture->levels[0].format == Format::rgba16f && of.texture->shape == TextureShape::flat;
     if (!filters && (!fetches || is_half)) continue;
     const auto same =
         std::find_if(decoded_.begin(), decoded_.end(),

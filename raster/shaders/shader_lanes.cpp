@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include "raster/images/decoded_texture.h"
+#include "raster/images/sliced_texture.h"
 #include "raster/images/texel.h"
 #include "raster/numbers/fused.h"
 #include "raster/numbers/half.h"
@@ -183,8 +184,10 @@ void store_lanes(Isa isa, const float* const* channels, const std::int32_t* kill
 #else  // kernels
 
 #include "raster/images/sample_lanes.inl"
+#include "raster/images/sliced_lanes.inl"
 #include "raster/shaders/math_lanes.inl"
 #include "raster/shaders/operation_lanes.inl"
+#include "raster/shaders/texture_lanes.inl"
 
 namespace {
 
@@ -211,13 +214,6 @@ constexpr bool is_ternary(ShaderOp op) {
   return op == ShaderOp::fused_multiply_add || op == ShaderOp::select ||
          op == extract_bits_signed || op == extract_bits_unsigned || is_of_doubles(op);
 }
-
-SOFTFOCUS_INLINE Bits bits_at(const std::byte* from) {
-  Bits v;
-  std::memcpy(&v, from, sizeof v);
-  return v;
-}
-SOFTFOCUS_INLINE void put_bits(std::byte* to, Bits v) { std::memcpy(to, &v, sizeof v); }
 
 template <ShaderOp op>
 void run_step(const LaneStep& step, LaneFrame& frame) {
@@ -285,16 +281,7 @@ void run_multiply_add(const LaneStep& step, LaneFrame& frame) {
   }
 }
 
-// --- differences in each four lanes: 0 1 above 2 3 ---
-
-SOFTFOCUS_INLINE Floats along_x(Floats v) {
-  const Mask upper = (lane_numbers() & 2) == 0;
-  return select(upper, spread<1>(v) - spread<0>(v), spread<3>(v) - spread<2>(v));
-}
-SOFTFOCUS_INLINE Floats along_y(Floats v) {
-  const Mask left = (lane_numbers() & 1) == 0;
-  return select(left, spread<2>(v) - spread<0>(v), spread<3>(v) - spread<1>(v));
-}
+// --- derivatives ---
 
 template <ShaderOp op>
 void run_derivative(const LaneStep& step, LaneFrame& frame) {
@@ -381,186 +368,6 @@ void run_load_constant(const LaneStep& step, LaneFrame& frame) {
     a += step.a_next;
     to += sizeof(Bits);
   }
-}
-
-// --- textures ---
-
-SOFTFOCUS_INLINE Ints numbers_of(const LaneSample::At& at, const LaneFrame& frame, int vector) {
-  if (!at.is_there) return Ints{};
-  return as_ints(bits_at(frame.memory + at.place + static_cast<std::size_t>(vector) * at.next));
-}
-SOFTFOCUS_INLINE void put_result(const LaneSample& sample, int channel, LaneFrame& frame,
-                                 int vector, Bits v) {
-  const LaneSample::At& at = sample.to[static_cast<std::size_t>(channel)];
-  if (at.is_there) {
-    put_bits(frame.memory + at.place + static_cast<std::size_t>(vector) * at.next, v);
-  }
-}
-
-/// Texels of halves by whole numbers; those outside of the texture are 0.
-void fetch_half_texels(const LaneSample& sample, const Image& level, LaneFrame& frame) {
-  const auto stride = static_cast<std::int32_t>(level.stride_bytes / 8);
-  const auto* texels = reinterpret_cast<const std::uint16_t*>(level.bytes.data());
-  for (int vector = 0; vector < static_cast<int>(sample.vectors); ++vector) {
-    const Ints x =
-        numbers_of(sample.at[0], frame, vector) + numbers_of(sample.offset[0], frame, vector);
-    const Ints y =
-        numbers_of(sample.at[1], frame, vector) + numbers_of(sample.offset[1], frame, vector);
-    const Mask inside = (Mask)(as_bits(x) < static_cast<std::uint32_t>(level.width)) &
-                        (Mask)(as_bits(y) < static_cast<std::uint32_t>(level.height));
-    HalfTexels found;
-    const Ints in_row = splat(x[0]) + lane_numbers();
-    if (all(inside & (x == in_row) & (y == splat(y[0])))) {
-      found = load_half_texels(texels + 4 * (static_cast<std::ptrdiff_t>(y[0]) * stride + x[0]));
-    } else {
-      // Pairs of halves, the first in the low bits of little-endian machines.
-      const Ints at = (y * stride + x) & inside;
-      const auto* pairs = reinterpret_cast<const std::int32_t*>(texels);
-      const IntPairs words = gather_pairs(pairs, at);
-      const Bits first = as_bits(words.first & inside), second = as_bits(words.second & inside);
-#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
-      found = {first >> 16, first & 0xFFFFu, second >> 16, second & 0xFFFFu};
-#else
-      found = {first & 0xFFFFu, first >> 16, second & 0xFFFFu, second >> 16};
-#endif
-    }
-    put_result(sample, 0, frame, vector, as_bits(half_to_float(found.r)));
-    put_result(sample, 1, frame, vector, as_bits(half_to_float(found.g)));
-    put_result(sample, 2, frame, vector, as_bits(half_to_float(found.b)));
-    put_result(sample, 3, frame, vector, as_bits(half_to_float(found.a)));
-  }
-}
-
-/// Texels of other formats, which have been decoded.
-void fetch_decoded_texels(const LaneSample& sample, const DecodedTexture& texture,
-                          std::size_t level, LaneFrame& frame) {
-  const Image& image = texture.source->levels[level];
-  const float* texels = texture.texels.data() + texture.starts[level];
-  for (int vector = 0; vector < static_cast<int>(sample.vectors); ++vector) {
-    const Ints x =
-        numbers_of(sample.at[0], frame, vector) + numbers_of(sample.offset[0], frame, vector);
-    const Ints y =
-        numbers_of(sample.at[1], frame, vector) + numbers_of(sample.offset[1], frame, vector);
-    const Mask inside = (Mask)(as_bits(x) < static_cast<std::uint32_t>(image.width)) &
-                        (Mask)(as_bits(y) < static_cast<std::uint32_t>(image.height));
-    const Ints at = ((y * image.width + x) * 4) & inside;
-    for (int channel = 0; channel < 4; ++channel) {
-      put_result(sample, channel, frame, vector, as_bits(gather(texels + channel, at, inside)));
-    }
-  }
-}
-
-/// Where a lane samples, of a side of a texture with that many texels.
-SOFTFOCUS_INLINE Floats place_of(const LaneSample& sample, int axis, int size,
-                                 const LaneFrame& frame, int vector) {
-  const auto number = static_cast<std::size_t>(axis);
-  if (!sample.at[number].is_there) return splat(0.5f);
-  Floats at = as_floats(as_bits(numbers_of(sample.at[number], frame, vector)));
-  if (sample.sample.dim == SpirvDim::one && axis == 1) at = splat(0.5f);
-  if (sample.sample.dim == SpirvDim::rectangle) at = at / static_cast<float>(size);
-  if (sample.offset[number].is_there) {
-    at += to_floats(numbers_of(sample.offset[number], frame, vector)) / static_cast<float>(size);
-  }
-  return at;
-}
-
-SOFTFOCUS_INLINE Floats floats_of(const LaneSample::At& at, const LaneFrame& frame, int vector) {
-  return as_floats(as_bits(numbers_of(at, frame, vector)));
-}
-
-// One level for all of a block, as GPUs have it.
-SOFTFOCUS_INLINE Floats along_row(Floats v, bool lower) {
-  return lower ? spread<3>(v) - spread<2>(v) : spread<1>(v) - spread<0>(v);
-}
-SOFTFOCUS_INLINE Floats along_left_column(Floats v) { return spread<2>(v) - spread<0>(v); }
-
-SOFTFOCUS_INLINE Floats level_of(const LaneSample& sample, const ShaderTexture& from,
-                                 const LaneFrame& frame, int vector) {
-  const Profile& profile = *frame.profile;
-  switch (sample.sample.kind) {
-    case SampleKind::level: return floats_of(sample.more[0], frame, vector);
-    case SampleKind::gradient:
-      return level_of_detail_lanes(*from.decoded, profile, floats_of(sample.more[0], frame, vector),
-                                   floats_of(sample.more[1], frame, vector),
-                                   floats_of(sample.more[3], frame, vector),
-                                   floats_of(sample.more[4], frame, vector));
-    default: break;
-  }
-  if (from.texture->levels.size() == 1) return splat(0.0f);
-  const Floats u = floats_of(sample.at[0], frame, vector);
-  const Floats v = floats_of(sample.at[1], frame, vector);
-  const bool lower = profile.attributes == AttributeSetup::planes_by_quad;
-  return level_of_detail_lanes(*from.decoded, profile, along_row(u, lower), along_row(v, lower),
-                               along_left_column(u), along_left_column(v)) +
-         floats_of(sample.more[0], frame, vector);
-}
-
-SOFTFOCUS_INLINE Mask comparison(Compare function, Floats given, Floats stored) {
-  switch (function) {
-    case Compare::never: return (given != given) & (given == given);
-    case Compare::less: return given < stored;
-    case Compare::equal: return given == stored;
-    case Compare::less_equal: return given <= stored;
-    case Compare::greater: return given > stored;
-    case Compare::not_equal: return given != stored;
-    case Compare::greater_equal: return given >= stored;
-    case Compare::always: break;
-  }
-  return (given != given) | (given == given);
-}
-
-/// Filtered texels, by the profile's texture unit.
-void sample_texels(const LaneSample& sample, const ShaderTexture& from, LaneFrame& frame) {
-  alignas(64) std::array<float, kMostSampled * kLanes> u, v, lod;
-  std::array<RgbaLanes, kMostSampled> colours;
-  const Image& base = from.texture->levels.front();
-  const int vectors = static_cast<int>(sample.vectors);
-  for (int first = 0; first < vectors; first += kMostSampled) {
-    const int count = std::min(kMostSampled, vectors - first);
-    for (int i = 0; i < count; ++i) {
-      store(u.data() + i * kLanes, place_of(sample, 0, base.width, frame, first + i));
-      store(v.data() + i * kLanes, place_of(sample, 1, base.height, frame, first + i));
-      store(lod.data() + i * kLanes, level_of(sample, from, frame, first + i));
-    }
-    sample_vectors(Isa::SOFTFOCUS_ISA, *from.decoded, from.sampler, *frame.profile,
-                   {u.data(), v.data(), lod.data()}, count, colours.data());
-    for (int i = 0; i < count; ++i) {
-      const RgbaLanes& colour = colours[static_cast<std::size_t>(i)];
-      if (sample.compared.is_there) {
-        const Mask passes =
-            comparison(from.compare, floats_of(sample.compared, frame, first + i), colour.r);
-        put_result(sample, 0, frame, first + i, as_bits(select(passes, splat(1.0f), splat(0.0f))));
-        continue;
-      }
-      put_result(sample, 0, frame, first + i, as_bits(colour.r));
-      put_result(sample, 1, frame, first + i, as_bits(colour.g));
-      put_result(sample, 2, frame, first + i, as_bits(colour.b));
-      put_result(sample, 3, frame, first + i, as_bits(colour.a));
-    }
-  }
-}
-
-void run_sample(const LaneStep& step, LaneFrame& frame) {
-  const LaneSample& sample = frame.samples[step.place];
-  const ShaderSample& of = sample.sample;
-  const ShaderTexture* from = sample.texture.next == 0 ? texture_of(sample, frame) : nullptr;
-  if (from == nullptr || of.is_integer || of.shape != TextureShape::flat) {
-    return sample_by_lane(sample, frame, kLanes);
-  }
-  if (of.kind == SampleKind::fetch && of.dim == SpirvDim::two && sample.more[0].next == 0) {
-    const std::int32_t level = numbers_of(sample.more[0], frame, 0)[0];
-    if (level >= 0 && level < std::ssize(from->texture->levels)) {
-      const Image& image = from->texture->levels[static_cast<std::size_t>(level)];
-      if (image.format == Format::rgba16f) return fetch_half_texels(sample, image, frame);
-      if (from->decoded != nullptr && !from->decoded->are_whole && !from->decoded->texels.empty()) {
-        return fetch_decoded_texels(sample, *from->decoded, static_cast<std::size_t>(level), frame);
-      }
-    }
-  }
-  const bool filters = of.kind == SampleKind::implicit || of.kind == SampleKind::level ||
-                       of.kind == SampleKind::gradient;
-  if (filters && from->decoded != nullptr) return sample_texels(sample, *from, frame);
-  sample_by_lane(sample, frame, kLanes);
 }
 
 // --- the table ---

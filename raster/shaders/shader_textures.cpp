@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raster/images/sliced_texture.h"
 #include "raster/images/texel.h"
 #include "raster/shaders/one_lane.h"
 
@@ -143,28 +144,49 @@ void sample_one(const LaneSample& sample, const Lane& lane) {
   for (int i = 0; i < 4; ++i) lane.put(sample.to[static_cast<std::size_t>(i)], texel[i]);
 }
 
+/// The left or upper texel of the four round a place.
+std::int32_t first_gathered(float u, int size) {
+  constexpr float kFarthest = 0x1p22f;
+  const float texels = sanitized(u) * static_cast<float>(size) - 0.5f;
+  return static_cast<std::int32_t>(std::floor(std::clamp(texels, -kFarthest, kFarthest)));
+}
+
+/// Four texels, `texel(right, lower)`, in the order of textureGather.
+template <class Texel>
+void put_gathered(const LaneSample& sample, const Lane& lane, const ShaderTexture& from,
+                  const Texel& texel) {
+  constexpr int kOrder[4][2] = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const glm::vec4 found = texel(kOrder[i][0], kOrder[i][1]);
+    float value = found[sample.sample.channel];
+    if (sample.compared.is_there) {
+      value = compare(from.compare, lane.number(sample.compared), found.x) ? 1.0f : 0.0f;
+    }
+    lane.put(sample.to[i], value);
+  }
+}
+
 }  // namespace
 
 void gather_texels(const LaneSample& sample, const Lane& lane, const ShaderTexture& from,
                    const Image& image, glm::vec2 at) {
   const Sampler& sampler = from.sampler;
-  constexpr float kFarthest = 0x1p22f;
-  const auto first = [&](float u, int size) {
-    const float texels = sanitized(u) * static_cast<float>(size) - 0.5f;
-    return static_cast<std::int32_t>(std::floor(std::clamp(texels, -kFarthest, kFarthest)));
-  };
-  const std::int32_t x = first(at.x, image.width), y = first(at.y, image.height);
-  constexpr int kOrder[4][2] = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
-  for (std::size_t i = 0; i < 4; ++i) {
-    const glm::vec4 texel =
-        fetch_texel(image, wrapped(x + kOrder[i][0], image.width, sampler.wrap_u),
-                    wrapped(y + kOrder[i][1], image.height, sampler.wrap_v), *lane.frame.profile);
-    float value = texel[sample.sample.channel];
-    if (sample.compared.is_there) {
-      value = compare(from.compare, lane.number(sample.compared), texel.x) ? 1.0f : 0.0f;
-    }
-    lane.put(sample.to[i], value);
-  }
+  const std::int32_t x = first_gathered(at.x, image.width), y = first_gathered(at.y, image.height);
+  put_gathered(sample, lane, from, [&](int right, int lower) {
+    return fetch_texel(image, wrapped(x + right, image.width, sampler.wrap_u),
+                       wrapped(y + lower, image.height, sampler.wrap_v), *lane.frame.profile);
+  });
+}
+
+void gather_cube_texels(const LaneSample& sample, const Lane& lane, const ShaderTexture& from,
+                        glm::vec3 direction) {
+  const CubePlace place = cube_place(direction);
+  const int size = from.texture->levels.front().width;
+  const std::int32_t x = first_gathered(place.at.x, size), y = first_gathered(place.at.y, size);
+  put_gathered(sample, lane, from, [&](int right, int lower) {
+    return fetch_cube_texel(*from.texture, {place.face, x + right, y + lower}, 0,
+                            *lane.frame.profile);
+  });
 }
 
 const ShaderTexture* texture_of(const LaneSample& sample, const LaneFrame& frame) {

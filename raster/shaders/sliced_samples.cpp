@@ -92,6 +92,7 @@ void sample_sliced_lane(const LaneSample& sample, const Lane& lane, const Shader
     case SampleKind::fetch: return fetch_of_slice(sample, lane, texture);
     case SampleKind::gather: {
       const glm::vec3 at = place_of_slice(sample, lane, texture);
+      if (texture.shape == TextureShape::cube) return gather_cube_texels(sample, lane, from, at);
       const Image& layer =
           slice_level(texture, nearest_layer(texture, at.z, *lane.frame.profile), 0);
       return gather_texels(sample, lane, from, layer, {at.x, at.y});
@@ -109,7 +110,7 @@ void sample_sliced_lane(const LaneSample& sample, const Lane& lane, const Shader
   }
   const glm::vec4 texel =
       sample_sliced(texture, from.sampler, place_of_slice(sample, lane, texture),
-                    level_of_slice(sample, lane, texture), *lane.frame.profile, from.decoded);
+                    level_of_slice(sample, lane, texture), *lane.frame.profile);
   if (sample.compared.is_there) {
     const bool passes = compare(from.compare, lane.number(sample.compared), texel.x);
     return lane.put(sample.to[0], passes ? 1.0f : 0.0f);

@@ -3,6 +3,9 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
@@ -21,12 +24,13 @@ using namespace softfocus::test;
 
 namespace {
 
-UserShader slices_shader(const std::string& declared, const std::string& body) {
+UserShader slices_shader(const std::string& declared, const std::string& body,
+                         const std::string& array = "") {
   const GlslSource source{.name = "slices.frag",
                           .text =
                               "#version 450\nlayout(location = 0) in vec2 uv;\n"
                               "layout(location = 0) out vec4 result;\nuniform " +
-                              declared + " t;\nvoid main() {\n" + body + "\n}\n"};
+                              declared + " t" + array + ";\nvoid main() {\n" + body + "\n}\n"};
   return make_shader(compile_glsl(source, [](const std::string&) { return std::nullopt; }).words);
 }
 
@@ -170,6 +174,57 @@ TEST_CASE("texelFetch, textureSize and gathers reach every slice, and 0 lies bey
                 load_texel(array.behind[2].levels[0], 3, 3).y}));
 }
 
+TEST_CASE("gathers of a cube go on on the next face, and beyond a corner lies the others' mean") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const Texture cube = slices_of_noise(TextureShape::cube, 8, 6);
+  const UserShader shader =
+      slices_shader("samplerCube",
+                    "result = textureGather(t, vec3(uv * 2.6 - 1.3, uv.x < 0.5 ? 1.0 : -1.0), 2);");
+  check_slices(shader, {.texture = &cube}, [&](int x, int y) {
+    const glm::vec2 uv = uv_of(x, y);
+    const CubePlace place = cube_place({uv * 2.6f - 1.3f, uv.x < 0.5f ? 1.0f : -1.0f});
+    const auto first = [](float u) { return static_cast<int>(std::floor(u * 8.0f - 0.5f)); };
+    const int u = first(place.at.x), v = first(place.at.y);
+    const auto channel = [&](int column, int row) {
+      const CubeTexel at = oracle_cube_texel({place.face, column, row}, 8);
+      return load_texel(slice_level(cube, at.face, 0), at.x, at.y).z;
+    };
+    const std::array<glm::ivec2, 4> four{{{u, v}, {u + 1, v}, {u, v + 1}, {u + 1, v + 1}}};
+    const auto value = [&](int i) {
+      const auto is_beyond = [](int of) { return of < 0 || of > 7; };
+      const glm::ivec2 own = four[static_cast<std::size_t>(i)];
+      if (!is_beyond(own.x) || !is_beyond(own.y)) return channel(own.x, own.y);
+      std::vector<float> others;
+      for (const glm::ivec2 other : four) {
+        if (other != own) others.push_back(channel(other.x, other.y));
+      }
+      return ((others[0] + others[1]) + others[2]) * (1.0f / 3.0f);
+    };
+    return glm::vec4{value(2), value(3), value(1), value(0)};
+  });
+}
+
+TEST_CASE("textureQueryLod of a volume and a cube gives the level that texture() takes") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const Texture volume = slices_of_noise(TextureShape::volume, 16, 8);
+  const Texture cube = slices_of_noise(TextureShape::cube, 16, 6);
+  for (const Texture* texture : {&volume, &cube}) {
+    const UserShader shader = slices_shader(
+        std::string{sampler_name(texture->shape)},
+        "vec3 at = vec3(uv, 1.25) * 4.0; result = vec4(textureQueryLod(t, at), 0.0, 0.0);");
+    check_slices(shader, {.texture = texture}, [&](int x, int y) {
+      const auto place = [](int column, int row) {
+        return glm::vec3{uv_of(column, row), 1.25f} * 4.0f;
+      };
+      const int column = x & ~1, row = y & ~1;
+      const glm::vec3 at = place(column, row);
+      const float lod = sliced_level_of_detail(*texture, at, place(column + 1, row) - at,
+                                               place(column, row + 1) - at, {});
+      return glm::vec4{std::clamp(lod, 0.0f, 4.0f), lod, 0.0f, 0.0f};
+    });
+  }
+}
+
 TEST_CASE("shadow samplers of arrays and cubes compare the filtered texel") {
   if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
   std::vector<Image> layers;
@@ -190,6 +245,63 @@ TEST_CASE("shadow samplers of arrays and cubes compare the filtered texel") {
       [](int x, int y) { return glm::vec4{uv_of(x, y).x < 0.625f ? 1.0f : 0.0f}; });
 }
 
+TEST_CASE(
+    "arrays, volumes and cubes have in lanes the bits that they have a lane after the other") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  // A texture whose number varies is read a lane after the other. Some places are NaN or infinite,
+  // and some lanes are elsewhere.
+  const std::string place =
+      "ivec2 p = ivec2(gl_FragCoord.xy);\n"
+      "vec3 at = vec3(uv.x * 7.0 - 3.0, uv.y * 3.0 - 1.0, uv.x - uv.y);\n"
+      "if (p.x % 11 == 3) at[p.y % 3] = 1.0 / float(p.x % 2) * (p.y > 2 ? -1.0 : 1.0);\n"
+      "if (p.x % 13 == 5) at[p.y % 3] *= 0.0 / float(p.x % 2);\n"
+      "result = vec4(9.0);\nint i = NUMBER;\n";
+  for (const TextureShape shape : {TextureShape::array, TextureShape::volume, TextureShape::cube}) {
+    const std::string sampler{sampler_name(shape)};
+    const bool is_cube = shape == TextureShape::cube;
+    const Texture texture = slices_of_noise(shape, 16, is_cube ? 6 : 9);
+    const std::string gradients = shape == TextureShape::array ? "vec2(uv.x, 0.3), vec2(0.2)"
+                                                               : "vec3(uv.x, 0.3, 0.1), vec3(0.2)";
+    std::vector<std::string> reads{"texture(t[i], at)", "texture(t[i], at, 1.5)",
+                                   "textureLod(t[i], at, uv.x * 6.0 - 1.0)",
+                                   "textureGrad(t[i], at, " + gradients + ")"};
+    if (!is_cube) {
+      const std::string offset = shape == TextureShape::array ? "ivec2(2, -1)" : "ivec3(2, -1, 3)";
+      reads.push_back("textureOffset(t[i], at, " + offset + ")");
+      reads.push_back("texelFetch(t[i], ivec3(p.x - 3, p.y - 1, p.x % 11 - 1), 0)");
+      reads.push_back("texelFetch(t[i], ivec3(p.x % 9, p.y, p.x % 11 - 1), p.y)");
+    }
+    for (const std::string& read : reads) {
+      const auto drawn = [&](const std::string& number, const Profile& profile, Isa isa) {
+        std::string text = place;
+        text.replace(text.find("NUMBER"), 6, number);
+        const UserShader shader = slices_shader(
+            sampler, text + "if ((p.x ^ p.y) % 5 != 4) result = " + read + ";\n", "[2]");
+        const ShaderTexture one{.texture = &texture,
+                                .sampler = {Filter::trilinear, Wrap::repeat, Wrap::mirrored_repeat,
+                                            Wrap::clamp_to_edge}};
+        const std::array<ShaderTexture, 2> both{one, one};
+        Image found = make_image(Format::rgba32f, kSlicesWidth, kSlicesHeight);
+        const ImageView view = found;
+        ThreadPool pool{1, isa};
+        run_shader(compile_shader(shader, shader.uniforms.words),
+                   {.textures = both, .targets = {&view, 1}, .profile = profile}, pool);
+        return found;
+      };
+      for (const NamedProfile& known : profiles()) {
+        const Image expected = drawn("p.x & 1", known.profile, Isa::scalar);
+        for (const Isa isa : available_isas()) {
+          CAPTURE(sampler);
+          CAPTURE(read);
+          CAPTURE(known.name);
+          CAPTURE(isa_name(isa));
+          CHECK(first_difference(drawn("0", known.profile, isa), expected) == "");
+        }
+      }
+    }
+  }
+}
+
 TEST_CASE("textures of another shape than the shader's, and samplers that are none, are refused") {
   if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
   const Texture volume = slices_of_noise(TextureShape::volume, 4, 2);
@@ -201,7 +313,4 @@ TEST_CASE("textures of another shape than the shader's, and samplers that are no
         "slices.frag:6: samplerCubeArray is not supported; samplerCube and sampler2DArray are");
   CHECK(refusal_of("sampler1DArray", "result = texture(t, uv);") ==
         "slices.frag:6: sampler1DArray is not supported; sampler2DArray is");
-  CHECK(
-      refusal_of("samplerCube", "result = textureGather(t, vec3(uv, 1.0));") ==
-      "slices.frag:6: textureGather of a samplerCube is not supported; of a sampler2DArray it is");
 }

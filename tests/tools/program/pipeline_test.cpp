@@ -166,7 +166,6 @@ TEST_CASE("chart and stress have a pipeline beside the methods, anew when it cha
 
 TEST_CASE("crosscheck --pipeline: volumes, cubes and arrays of files are a driver's to the bit") {
   if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
-  if (!has_driver("llvmpipe")) return;
   const TemporaryDirectory directory;
   write_file(directory.file("strip.png"), test::png_bytes(24, 4));
   write_file(directory.file("slices.frag"),
@@ -179,14 +178,18 @@ TEST_CASE("crosscheck --pipeline: volumes, cubes and arrays of files are a drive
              "[textures]\nstrip = \"strip.png\"\n[[pass]]\nshader = \"slices.frag\"\n"
              "inputs = { lut = { from = \"strip\", wrap = \"mirror\" }, layers = \"strip\", "
              "sky = { from = \"strip\", filter = \"trilinear\" } }\n");
-  const ProgramRun run = run_program({"crosscheck", "--driver", "llvmpipe", "--pipeline",
-                                      directory.file("slices.toml"), "--quick", "--json"});
-  CAPTURE(run.err);
-  CHECK(run.status == 0);
-  for (const json& of : json::parse(run.out)) {
-    CAPTURE(of.dump());
-    CHECK(of["values"] > 0);
-    CHECK(of["differing"] == 0);
+  for (const char* driver : {"llvmpipe", "emulated"}) {
+    if (!has_driver(driver)) continue;
+    const ProgramRun run = run_program({"crosscheck", "--driver", driver, "--pipeline",
+                                        directory.file("slices.toml"), "--quick", "--json"});
+    CAPTURE(driver);
+    CAPTURE(run.err);
+    CHECK(run.status == 0);
+    for (const json& of : json::parse(run.out)) {
+      CAPTURE(of.dump());
+      CHECK(of["values"] > 0);
+      CHECK(of["differing"] == 0);
+    }
   }
 }
 
