@@ -98,13 +98,17 @@ ExrPlane plane_of(std::string name, const std::span<const float>& band) {
 ExrPlane plane_of(std::string name, const ConstImageView& band, std::size_t channel,
                   Imf::PixelType type, float light = 1.0f) {
   return {std::move(name), type, [&band, channel, type, light](int, int rows, std::byte* to) {
-            const std::size_t size = bytes_of(type);
             for (int y = 0; y < rows; ++y) {
               const auto from = row<std::uint16_t>(band, y);
-              for (std::size_t i = channel; i < from.size(); i += 4, to += size) {
+              if (type == Imf::HALF) {
+                for (std::size_t i = channel; i < from.size(); i += 4, to += sizeof from[i]) {
+                  std::memcpy(to, &from[i], sizeof from[i]);
+                }
+                continue;
+              }
+              for (std::size_t i = channel; i < from.size(); i += 4, to += sizeof(float)) {
                 const float value = half_to_float(from[i]) * light;
-                std::memcpy(to, type == Imf::HALF ? static_cast<const void*>(&from[i]) : &value,
-                            size);
+                std::memcpy(to, &value, sizeof value);
               }
             }
           }};
