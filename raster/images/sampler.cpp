@@ -86,6 +86,59 @@ float level_of_detail(const Texture& texture, glm::vec2 uv_per_x, glm::vec2 uv_p
   return 0.5f * log2_linear(largest_square(uv_per_x, uv_per_y, width, height));
 }
 
+namespace {
+
+// What each byte decodes to: texels are read four times as often as there are codes.
+using ByteValues = std::array<float, 256>;
+
+ByteValues values_of_bytes(float (*decode)(std::uint8_t encoded)) {
+  ByteValues values{};
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = decode(static_cast<std::uint8_t>(i));
+  return values;
+}
+
+// Halves an image of four bytes a texel.
+template <Format format>
+void halve_bytes(const Image& fine, Image& coarse, const Profile& profile) {
+  static const ByteValues colours =
+      values_of_bytes(format == Format::srgb8 ? srgb8_to_linear : unorm8_to_linear);
+  static const ByteValues alphas = values_of_bytes(unorm8_to_linear);
+  const std::size_t right = fine.width > 1 ? 4 : 0;
+  for (int y = 0; y < coarse.height; ++y) {
+    const std::uint8_t* upper = row<std::uint8_t>(fine, 2 * y).data();
+    const std::uint8_t* lower =
+        row<std::uint8_t>(fine, std::min(2 * y + 1, fine.height - 1)).data();
+    for (int x = 0; x < coarse.width; ++x, upper += 8, lower += 8) {
+      glm::vec4 mean{};
+      for (std::size_t c = 0; c < 4; ++c) {
+        const ByteValues& codes = c < 3 ? colours : alphas;
+        mean[static_cast<int>(c)] = ((codes[upper[c]] + codes[upper[right + c]]) +
+                                     (codes[lower[c]] + codes[lower[right + c]])) *
+                                    0.25f;
+      }
+      store_texel<format>(coarse, x, y, mean, profile);
+    }
+  }
+}
+
+void halve(const Image& fine, Image& coarse, const Profile& profile) {
+  if (fine.format == Format::rgba8) return halve_bytes<Format::rgba8>(fine, coarse, profile);
+  if (fine.format == Format::srgb8) return halve_bytes<Format::srgb8>(fine, coarse, profile);
+  for (int y = 0; y < coarse.height; ++y) {
+    const int y0 = std::min(2 * y, fine.height - 1);
+    const int y1 = std::min(2 * y + 1, fine.height - 1);
+    for (int x = 0; x < coarse.width; ++x) {
+      const int x0 = std::min(2 * x, fine.width - 1);
+      const int x1 = std::min(2 * x + 1, fine.width - 1);
+      const glm::vec4 sum = (load_texel(fine, x0, y0) + load_texel(fine, x1, y0)) +
+                            (load_texel(fine, x0, y1) + load_texel(fine, x1, y1));
+      store_texel(coarse, x, y, sum * 0.25f, profile);
+    }
+  }
+}
+
+}  // namespace
+
 void generate_mipmaps(Texture& texture, const Profile& profile) {
   assert(!texture.levels.empty());
   if (texture.shape != TextureShape::flat) return generate_sliced_mipmaps(texture, profile);
@@ -95,17 +148,7 @@ void generate_mipmaps(Texture& texture, const Profile& profile) {
     if (fine.width == 1 && fine.height == 1) return;
     Image coarse =
         make_image(fine.format, std::max(1, fine.width / 2), std::max(1, fine.height / 2));
-    for (int y = 0; y < coarse.height; ++y) {
-      const int y0 = std::min(2 * y, fine.height - 1);
-      const int y1 = std::min(2 * y + 1, fine.height - 1);
-      for (int x = 0; x < coarse.width; ++x) {
-        const int x0 = std::min(2 * x, fine.width - 1);
-        const int x1 = std::min(2 * x + 1, fine.width - 1);
-        const glm::vec4 sum = (load_texel(fine, x0, y0) + load_texel(fine, x1, y0)) +
-                              (load_texel(fine, x0, y1) + load_texel(fine, x1, y1));
-        store_texel(coarse, x, y, sum * 0.25f, profile);
-      }
-    }
+    halve(fine, coarse, profile);
     texture.levels.push_back(std::move(coarse));
   }
 }

@@ -11,13 +11,14 @@ namespace {
 template <class Number>
 std::optional<Number> nearest(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
-  // What strtof takes and from_chars does not: hexadecimal, blanks and a second plus.
-  if (word.find_first_of("xX \t\n\v\f\r") != word.npos || word.starts_with('+')) return {};
 #if defined(__cpp_lib_to_chars)
   Number value{0};
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (end != word.data() + word.size() || error == std::errc::invalid_argument) return {};
   if (error != std::errc::result_out_of_range) return value;
+#else
+  // What strtof takes and from_chars does not: hexadecimal, blanks and a second plus.
+  if (word.find_first_of("xX \t\n\v\f\r") != word.npos || word.starts_with('+')) return {};
 #endif
   // from_chars does not say whether it was too large or too small, strtof does.
   const std::string copy(word);

@@ -156,7 +156,7 @@ ChosenEffect read_effect(Section& section) {
 
 }  // namespace
 
-Scene read_scene_text(std::string_view text, const std::filesystem::path& file) {
+Scene read_scene_text(std::string_view text, const std::filesystem::path& file, ThreadPool* pool) {
   const toml::table table = parse_toml(text, file.string(), "docs/scene-format.md");
   Section top{&table, file.string(), "", {}};
   Scene scene;
@@ -188,14 +188,14 @@ Scene read_scene_text(std::string_view text, const std::filesystem::path& file) 
   }
   for (Section& effect : read_sections(top, "effect")) scene.effects.push_back(read_effect(effect));
 
-  const NamedSurfaces surfaces = read_surfaces(top, file.parent_path(), scene);
-  read_objects(top, file.parent_path(), surfaces, scene);
+  const NamedSurfaces surfaces = read_surfaces(top, file.parent_path(), scene, pool);
+  read_objects(top, file.parent_path(), surfaces, scene, pool);
   finish_section(top);
   return scene;
 }
 
-Scene read_scene_file(const std::filesystem::path& file) {
-  Scene scene = read_scene_text(read_file_bytes(file, kMaxSceneBytes), file);
+Scene read_scene_file(const std::filesystem::path& file, ThreadPool* pool) {
+  Scene scene = read_scene_text(read_file_bytes(file, kMaxSceneBytes), file, pool);
   scene.files.push_back(file);
   return scene;
 }
@@ -257,18 +257,19 @@ std::uint64_t read_seed(std::string_view scene) {
 
 bool is_random_scene(std::string_view scene) { return scene.starts_with(kRandom); }
 
-Scene load_scene(std::string_view scene, const std::vector<std::filesystem::path>& search_path) {
-  if (is_random_scene(scene)) return make_random_scene(read_seed(scene));
+Scene load_scene(std::string_view scene, const std::vector<std::filesystem::path>& search_path,
+                 ThreadPool* pool) {
+  if (is_random_scene(scene)) return make_random_scene(read_seed(scene), pool);
   const std::filesystem::path file{scene};
-  if (has_extension(scene, ".toml")) return read_scene_file(file);
+  if (has_extension(scene, ".toml")) return read_scene_file(file, pool);
   if (has_extension(scene, ".obj")) {
-    return make_model_scene(load_obj_model(file), file.stem().string());
+    return make_model_scene(load_obj_model(file, pool), file.stem().string());
   }
   const auto listings = list_scenes(search_path);
   const auto found = std::find_if(listings.begin(), listings.end(),
                                   [&](const SceneListing& l) { return l.name == scene; });
   if (found == listings.end()) fail_unknown(scene, listings);
-  return read_scene_file(found->file);
+  return read_scene_file(found->file, pool);
 }
 
 std::size_t triangle_count(const Scene& scene) {

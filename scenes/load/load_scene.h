@@ -6,20 +6,23 @@
 #include <string_view>
 #include <vector>
 
+#include "raster/threads/parallel.h"
 #include "scenes/files/scene_error.h"
 #include "scenes/scene.h"
 
 namespace softfocus {
 
-// Scene files: TOML in the format of docs/scene-format.md.
+// Scene files: TOML in the format of docs/scene-format.md. `pool`: the threads that make textures
+// and read models; none: the calling one.
 
 /// Reads a scene file and what it refers to. Throws SceneError, with the line, for
 /// everything that is not as docs/scene-format.md says, unknown keys included.
-Scene read_scene_file(const std::filesystem::path& file);
+Scene read_scene_file(const std::filesystem::path& file, ThreadPool* pool = nullptr);
 
 /// The same for a text that would stand in `file`: files that it names are looked for
 /// beside that.
-Scene read_scene_text(std::string_view text, const std::filesystem::path& file);
+Scene read_scene_text(std::string_view text, const std::filesystem::path& file,
+                      ThreadPool* pool = nullptr);
 
 /// A scene file's title without reading the scene; empty where there is none. Throws
 /// SceneError for what is no TOML.
@@ -46,6 +49,7 @@ bool is_random_scene(std::string_view scene);
 /// `scene` is a .toml file, an .obj model (any string that ends so is a path), "random:SEED"
 /// (scenes/random/random_scene.h; SEED is 0 to 2^64 - 1), or the name of a scene on the path.
 /// Throws SceneError.
-Scene load_scene(std::string_view scene, const std::vector<std::filesystem::path>& search_path);
+Scene load_scene(std::string_view scene, const std::vector<std::filesystem::path>& search_path,
+                 ThreadPool* pool = nullptr);
 
 }  // namespace softfocus

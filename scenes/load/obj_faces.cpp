@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 #include <unordered_set>
 
 #include "raster/numbers/random_bits.h"
@@ -47,38 +48,53 @@ class FacesSoFar {
   std::unordered_set<std::vector<std::uint32_t>, Mix> known_;
 };
 
-// An edge, and the triangles that meet there.
-struct SharedEdge {
-  std::uint32_t count = 0;
-  std::array<std::uint32_t, 2> triangles{};  // the first two
-  std::array<bool, 2> upwards{};             // whether each runs from the lower to the higher place
+// A side of a triangle, from one place to another: 3 * triangle + which.
+using Side = std::uint32_t;
+
+struct Edge {
+  std::uint32_t to;  // the higher place
+  Side side;
 };
 
-// The edges of triangles, and the three of each.
-struct EdgeList {
-  std::vector<SharedEdge> edges;
-  std::vector<std::array<std::uint32_t, 3>> of_triangle;
-};
+// For each side the one of another triangle that lies along it, if that is one alone.
+constexpr Side kNone = std::numeric_limits<Side>::max();
 
-EdgeList list_edges(std::span<const std::array<std::uint32_t, 3>> triangles) {
-  EdgeList list;
-  FirstComeNumbers numbers{triangles.size() * 3 / 2};
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    auto& own = list.of_triangle.emplace_back();
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::uint32_t from = triangles[t][i], to = triangles[t][(i + 1) % 3];
-      const auto [number, is_new] = numbers.number({std::min(from, to), std::max(from, to), 0});
-      if (is_new) list.edges.emplace_back();
-      SharedEdge& edge = list.edges[number];
-      if (edge.count < 2) {
-        edge.triangles[edge.count] = t;
-        edge.upwards[edge.count] = from < to;
+// Sides in the order of the lower of their places; then those of a place by the higher one.
+std::vector<Side> pair_sides(std::span<const std::array<std::uint32_t, 3>> triangles) {
+  const auto ends = [&](Side side) {
+    const auto& triangle = triangles[side / 3];
+    return std::minmax(triangle[side % 3], triangle[(side + 1) % 3]);
+  };
+  const auto side_count = static_cast<Side>(3 * triangles.size());
+  std::uint32_t place_count = 0;
+  for (const auto& triangle : triangles) {
+    for (const std::uint32_t place : triangle) place_count = std::max(place_count, place + 1);
+  }
+  std::vector<Side> starts(place_count + std::size_t{1});
+  for (Side side = 0; side < side_count; ++side) ++starts[ends(side).first + std::size_t{1}];
+  for (std::size_t i = 0; i < place_count; ++i) starts[i + 1] += starts[i];
+  std::vector<Edge> edges(side_count);
+  std::vector<Side> next = starts;
+  for (Side side = 0; side < side_count; ++side) {
+    const auto [low, high] = ends(side);
+    edges[next[low]++] = {high, side};
+  }
+  std::vector<Side> paired(side_count, kNone);
+  for (std::size_t place = 0; place < place_count; ++place) {
+    const auto first = edges.begin() + starts[place], last = edges.begin() + starts[place + 1];
+    std::sort(first, last, [](const Edge& a, const Edge& b) {
+      return a.to != b.to ? a.to < b.to : a.side < b.side;
+    });
+    for (auto edge = first; edge != last;) {
+      const auto other = std::find_if(edge, last, [&](const Edge& e) { return e.to != edge->to; });
+      if (other - edge == 2) {
+        paired[edge[0].side] = edge[1].side;
+        paired[edge[1].side] = edge[0].side;
       }
-      ++edge.count;
-      own[i] = number;
+      edge = other;
     }
   }
-  return list;
+  return paired;
 }
 
 }  // namespace
@@ -86,6 +102,7 @@ EdgeList list_edges(std::span<const std::array<std::uint32_t, 3>> triangles) {
 std::vector<std::uint32_t> number_places(const ObjText& obj) {
   FirstComeNumbers places{obj.positions.size()};
   std::vector<std::uint32_t> place_of;
+  place_of.reserve(obj.positions.size());
   for (const glm::vec3& position : obj.positions) {
     place_of.push_back(places.number(bits_of(position)).first);
   }
@@ -106,8 +123,15 @@ std::size_t drop_doubled_faces(ObjText& obj, std::span<const std::uint32_t> plac
 }
 
 std::vector<bool> triangles_to_turn(std::span<const std::array<std::uint32_t, 3>> triangles) {
-  const EdgeList list = list_edges(triangles);
   std::vector<bool> turned(triangles.size()), reached(triangles.size());
+  const std::vector<Side> paired = pair_sides(triangles);
+  const auto start = [&](Side side) { return triangles[side / 3][side % 3]; };
+  const auto is_wrong = [&](Side side) {
+    return paired[side] != kNone && start(side) == start(paired[side]);
+  };
+  bool is_right = true;
+  for (Side side = 0; side < paired.size() && is_right; ++side) is_right = !is_wrong(side);
+  if (is_right) return turned;
   std::vector<std::uint32_t> piece;
   for (std::uint32_t first = 0; first < triangles.size(); ++first) {
     if (reached[first]) continue;
@@ -115,13 +139,12 @@ std::vector<bool> triangles_to_turn(std::span<const std::array<std::uint32_t, 3>
     piece.assign(1, first);
     std::size_t turned_count = 0;
     for (std::size_t i = 0; i < piece.size(); ++i) {
-      for (const std::uint32_t number : list.of_triangle[piece[i]]) {
-        const SharedEdge& edge = list.edges[number];
-        if (edge.count != 2) continue;
-        const std::uint32_t other = edge.triangles[edge.triangles[0] == piece[i] ? 1 : 0];
+      for (Side side = 3 * piece[i]; side < 3 * piece[i] + 3; ++side) {
+        if (paired[side] == kNone) continue;
+        const std::uint32_t other = paired[side] / 3;
         if (reached[other]) continue;
         reached[other] = true;
-        turned[other] = turned[piece[i]] != (edge.upwards[0] == edge.upwards[1]);
+        turned[other] = turned[piece[i]] != is_wrong(side);
         turned_count += turned[other] ? 1 : 0;
         piece.push_back(other);
       }

@@ -22,7 +22,7 @@ std::size_t drop_doubled_faces(ObjText& obj, std::span<const std::uint32_t> plac
 /// Which triangles, by their corners' places, to turn so that two that share an edge with no third
 /// run through it in opposite directions. Of a piece that hangs together by such edges the fewer
 /// are turned; of halves, the one without the piece's first. A piece with one side only, as
-/// Moebius's, keeps some edges where it does not fit. Linear.
+/// Moebius's, keeps some edges where it does not fit. Linear but for sorting the edges of a place.
 std::vector<bool> triangles_to_turn(std::span<const std::array<std::uint32_t, 3>> triangles);
 
 }  // namespace softfocus

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 #include <glm/common.hpp>
 #include <limits>
 #include <string>
@@ -56,22 +57,28 @@ std::vector<Triangle> make_triangles(const ObjText& obj) {
     return glm::dvec3{obj.positions[static_cast<std::size_t>(corner.position)]};
   };
   std::vector<Triangle> triangles;
+  triangles.reserve(obj.faces.size());
   std::vector<glm::dvec3> outline;
   for (std::size_t f = 0; f < obj.faces.size(); ++f) {
     const ObjFace& face = obj.faces[f];
     const ObjCorner* corners = &obj.corners[face.first_corner];
     outline.clear();
     for (std::uint32_t i = 0; i < face.corner_count; ++i) outline.push_back(place(corners[i]));
-    for (const auto& [a, b, c] : triangulate_polygon(outline)) {
+    const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
       Triangle triangle{{corners[a], corners[b], corners[c]}, static_cast<std::uint32_t>(f)};
       triangle.area_normal = cross(outline[b] - outline[a], outline[c] - outline[a]);
-      if (triangle.area_normal == glm::dvec3{0.0}) continue;
+      if (triangle.area_normal == glm::dvec3{0.0}) return;
       if (is_wound_against_normals(obj, triangle)) {
         std::swap(triangle.corners[1], triangle.corners[2]);
         triangle.area_normal = -triangle.area_normal;
       }
       triangles.push_back(triangle);
+    };
+    if (face.corner_count == 3) {  // most are
+      add(0, 1, 2);
+      continue;
     }
+    for (const auto& [a, b, c] : triangulate_polygon(outline)) add(a, b, c);
   }
   return triangles;
 }
@@ -118,9 +125,10 @@ std::vector<glm::vec3> complete_normals(const ObjText& obj,
   };
 
   FirstComeNumbers sums;
-  std::vector<glm::dvec3> sum_of;
+  std::vector<glm::dvec3> sum_of(obj.has_smoothing_groups ? 0 : place_of.size());
   const auto sum_number = [&](const Triangle& triangle, const ObjCorner& corner) {
     const std::uint32_t place = place_of[static_cast<std::size_t>(corner.position)];
+    if (!obj.has_smoothing_groups) return place;
     const auto [number, is_new] = sums.number({place, group_of(triangle), 0});
     if (is_new) sum_of.emplace_back(0.0);
     return number;
@@ -161,10 +169,23 @@ struct GrowingPart {
   bool has_uvs = false;
 };
 
+// The last vertex of a position. Most positions have one, which need not be looked for by its hash.
+struct LastVertex {
+  const GrowingPart* part = nullptr;
+  ObjCorner corner;
+  std::uint32_t number = 0;
+};
+
 void append_corner(GrowingPart& growing, const ObjText& obj,
-                   const std::vector<glm::vec3>& all_normals, const ObjCorner& corner) {
+                   const std::vector<glm::vec3>& all_normals, const ObjCorner& corner,
+                   LastVertex& last) {
   Mesh& mesh = growing.part.mesh;
+  if (last.part == &growing && last.corner.uv == corner.uv && last.corner.normal == corner.normal) {
+    mesh.indices.push_back(last.number);
+    return;
+  }
   const auto [vertex, is_new] = growing.vertices.number(key_of(corner));
+  last = {&growing, corner, vertex};
   mesh.indices.push_back(vertex);
   if (!is_new) return;
   const auto position = static_cast<std::size_t>(corner.position);
@@ -283,11 +304,11 @@ void show_invisible(const ObjText& obj, const std::filesystem::path& file, ObjMo
 
 }  // namespace
 
-ObjModel load_obj_model(const std::filesystem::path& file) {
+ObjModel load_obj_model(const std::filesystem::path& file, ThreadPool* pool) {
   const std::string text = read_file_text(file, kMaxObjBytes);
-  ObjText obj = parse_obj_text(text, file.string());
+  ObjText obj = parse_obj_text(text, file.string(), glm::dvec3{0.0}, pool);
   const glm::dvec3 origin = far_middle(obj);
-  if (origin != glm::dvec3{0.0}) obj = parse_obj_text(text, file.string(), origin);
+  if (origin != glm::dvec3{0.0}) obj = parse_obj_text(text, file.string(), origin, pool);
   const std::vector<std::uint32_t> place_of = number_places(obj);
   const std::size_t face_count = obj.faces.size();
   const std::size_t doubled = drop_doubled_faces(obj, place_of);
@@ -320,7 +341,8 @@ ObjModel load_obj_model(const std::filesystem::path& file) {
   }
 
   const std::size_t without_material = obj.material_names.size();
-  std::vector<GrowingPart> growing;
+  std::deque<GrowingPart> growing;  // which stay where they are
+  std::vector<LastVertex> last_vertices(obj.positions.size());
   std::vector<std::optional<std::size_t>> part_of(model.materials.size());
   for (const Triangle& triangle : triangles) {
     const std::int32_t named = obj.faces[triangle.face].material;
@@ -335,7 +357,8 @@ ObjModel load_obj_model(const std::filesystem::path& file) {
       }
     }
     for (const ObjCorner& corner : triangle.corners) {
-      append_corner(growing[*part_of[material]], obj, all_normals, corner);
+      append_corner(growing[*part_of[material]], obj, all_normals, corner,
+                    last_vertices[static_cast<std::size_t>(corner.position)]);
     }
   }
   for (GrowingPart& part : growing) {

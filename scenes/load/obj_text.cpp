@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <exception>
 #include <optional>
 #include <unordered_map>
 #include <unordered_set>
@@ -14,6 +15,8 @@ namespace softfocus {
 namespace {
 
 constexpr std::string_view kBlanks = " \t";
+
+bool is_blank(char c) { return c == ' ' || c == '\t'; }
 
 // The line that is being read.
 struct Place {
@@ -27,9 +30,12 @@ struct Place {
 
 // Takes the next word off the line; empty at its end.
 std::string_view next_word(std::string_view& line) {
-  line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));
-  const std::string_view word = line.substr(0, line.find_first_of(kBlanks));
-  line.remove_prefix(word.size());
+  std::size_t start = 0;
+  while (start < line.size() && is_blank(line[start])) ++start;
+  std::size_t end = start;
+  while (end < line.size() && !is_blank(line[end])) ++end;
+  const std::string_view word = line.substr(start, end - start);
+  line.remove_prefix(end);
   return word;
 }
 
@@ -64,6 +70,7 @@ glm::vec3 read_position(const Place& place, std::string_view& line, glm::dvec3 o
 // What follows a position: r g b, and perhaps more. A fourth number alone is a weight.
 std::optional<glm::vec3> read_colour(std::string_view line) {
   glm::vec3 colour{0.0f};
+  if (line.empty()) return std::nullopt;
   for (int i = 0; i < 3; ++i) {
     const auto number = decimal_to_float(next_word(line));
     if (!number || !(*number >= 0.0f && *number <= 255.0f)) return std::nullopt;
@@ -102,17 +109,22 @@ std::int32_t read_index(const Place& place, std::string_view text, std::size_t c
   return static_cast<std::int32_t>(from_end);
 }
 
-ObjCorner read_corner(const Place& place, std::string_view word, const ObjText& obj) {
+// What a piece of the text has, or what lies before it.
+struct Counts {
+  std::size_t lines = 0, positions = 0, uvs = 0, normals = 0;
+};
+
+ObjCorner read_corner(const Place& place, std::string_view word, const Counts& so_far) {
   ObjCorner corner;
   const std::size_t first = word.find('/');
-  corner.position = read_index(place, word.substr(0, first), obj.positions.size(), "position");
+  corner.position = read_index(place, word.substr(0, first), so_far.positions, "position");
   if (first == std::string_view::npos) return corner;
   const std::size_t second = word.find('/', first + 1);
   const std::string_view uv = word.substr(first + 1, second - first - 1);
-  if (!uv.empty()) corner.uv = read_index(place, uv, obj.uvs.size(), "texture coordinate");
+  if (!uv.empty()) corner.uv = read_index(place, uv, so_far.uvs, "texture coordinate");
   if (second == std::string_view::npos) return corner;
   const std::string_view normal = word.substr(second + 1);
-  if (!normal.empty()) corner.normal = read_index(place, normal, obj.normals.size(), "normal");
+  if (!normal.empty()) corner.normal = read_index(place, normal, so_far.normals, "normal");
   return corner;
 }
 
@@ -162,43 +174,102 @@ struct FaceState {
   std::uint32_t smoothing_group = 0;
 };
 
-// Takes the next line off the text, with the lines that continue it.
-std::string_view next_line(std::string_view& text, std::string& joined, std::size_t& line_count) {
-  joined.clear();
-  for (;;) {
-    const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
-    std::string_view line = text.substr(0, end);
-    const std::size_t ending = text.substr(end).starts_with("\r\n") ? 2 : 1;
-    text.remove_prefix(std::min(end + ending, text.size()));
-    ++line_count;
-    const std::size_t last = line.find_last_not_of(kBlanks);
-    const bool continues = last != line.npos && line[last] == '\\';
-    if (continues) line = line.substr(0, last);
-    if (!continues && joined.empty()) return line;
-    joined.append(line).append(" ");
-    if (!continues || text.empty()) return joined;
+// Reads a text line by line.
+class LineReader {
+ public:
+  explicit LineReader(std::string_view text) : text_(text) {}
+
+  bool has_more() const { return start_ < text_.size(); }
+  /// The lines that were read, those that continue another as well.
+  std::size_t count() const { return count_; }
+
+  /// The next line, with the lines that continue it.
+  std::string_view next() {
+    joined_.clear();
+    for (;;) {
+      std::string_view line = next_alone();
+      std::size_t end = line.size();
+      while (end > 0 && is_blank(line[end - 1])) --end;
+      const bool continues = end > 0 && line[end - 1] == '\\';
+      if (continues) line = line.substr(0, end - 1);
+      if (!continues && joined_.empty()) return line;
+      joined_.append(line).append(" ");
+      if (!continues || !has_more()) return joined_;
+    }
   }
+
+ private:
+  std::string_view next_alone() {
+    if (newline_ <= start_) newline_ = std::min(text_.find('\n', start_), text_.size());
+    const std::size_t end = std::min(text_.substr(0, newline_).find('\r', start_), newline_);
+    const std::string_view line = text_.substr(start_, end - start_);
+    start_ = std::min(end + (text_.substr(end).starts_with("\r\n") ? 2 : 1), text_.size());
+    ++count_;
+    return line;
+  }
+
+  std::string_view text_;
+  std::size_t start_ = 0;
+  std::size_t newline_ = 0;  // the next, if it lies beyond `start_`
+  std::size_t count_ = 0;
+  std::string joined_;
+};
+
+Counts count_lines(std::string_view text) {
+  Counts counts;
+  LineReader reader{text};
+  while (reader.has_more()) {
+    std::string_view line = reader.next();
+    const std::string_view keyword = next_word(line);
+    counts.positions += keyword == "v" ? 1 : 0;
+    counts.uvs += keyword == "vt" ? 1 : 0;
+    counts.normals += keyword == "vn" ? 1 : 0;
+  }
+  counts.lines = reader.count();
+  return counts;
 }
 
-}  // namespace
-
-ObjText parse_obj_text(std::string_view text, const std::string& file, glm::dvec3 origin) {
-  Place place{file};
-  if (text.find('\0') != std::string_view::npos) {
-    throw SceneError(file + ": is binary; an OBJ model is text");
-  }
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark
+// A piece of the text, read alone. The faces before its first `usemtl` have the material of the
+// piece before, the faces before its first `s` the smoothing group.
+struct Piece {
+  std::string_view text;
+  Counts before;
   ObjText obj;
-  FaceState state;
   std::vector<std::size_t> face_lines;
-  Tolerated short_faces, wild_uvs, missing_uvs, wild_normals, bright_colours;
-  std::unordered_map<std::string, std::int32_t> number_of_material;
-  std::unordered_set<std::string> known_libraries;
-  std::string joined;
-  std::size_t lines_read = 0;
+  std::optional<std::size_t> faces_before_material, faces_before_group;
+  std::int32_t last_material = -1;
+  std::uint32_t last_group = 0;
+  Tolerated short_faces, wild_uvs, wild_normals, bright_colours, missing_uvs;
+  std::exception_ptr error;
+};
+
+// Cuts a text where a line begins that continues no other.
+std::vector<Piece> cut_into_pieces(std::string_view text) {
+  constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
+  std::vector<Piece> pieces;
   while (!text.empty()) {
-    place.line = lines_read + 1;
-    std::string_view line = next_line(text, joined, lines_read);
+    std::size_t end = text.find('\n', std::min(kPieceBytes, text.size()));
+    const auto is_continued = [&] {
+      std::size_t last = end;
+      while (last > 0 && (is_blank(text[last - 1]) || text[last - 1] == '\r')) --last;
+      return last > 0 && text[last - 1] == '\\';
+    };
+    while (end != text.npos && is_continued()) end = text.find('\n', end + 1);
+    const std::size_t size = end == text.npos ? text.size() : end + 1;
+    pieces.emplace_back().text = text.substr(0, size);
+    text.remove_prefix(size);
+  }
+  return pieces;
+}
+
+void read_piece(Piece& piece, Place place, glm::dvec3 origin) {
+  ObjText& obj = piece.obj;
+  FaceState state;
+  std::unordered_map<std::string, std::int32_t> number_of_material;
+  LineReader reader{piece.text};
+  while (reader.has_more()) {
+    place.line = piece.before.lines + reader.count() + 1;
+    std::string_view line = reader.next();
     const std::string_view keyword = next_word(line);
     if (keyword == "v") {
       obj.positions.push_back(read_position(place, line, origin));
@@ -207,14 +278,17 @@ ObjText parse_obj_text(std::string_view text, const std::string& file, glm::dvec
       obj.colours.resize(obj.positions.size() - 1, glm::vec3{1.0f});
       obj.colours.push_back(colour.value_or(glm::vec3{1.0f}));
       const glm::vec3& last = obj.colours.back();
-      if (std::max({last.x, last.y, last.z}) > 1.0f) tolerate(bright_colours, place);
+      if (std::max({last.x, last.y, last.z}) > 1.0f) tolerate(piece.bright_colours, place);
     } else if (keyword == "vt") {
-      obj.uvs.push_back(read_uv(place, line, wild_uvs));
+      obj.uvs.push_back(read_uv(place, line, piece.wild_uvs));
     } else if (keyword == "vn") {
       const auto normal = read_normal(line);
-      if (!normal) tolerate(wild_normals, place);
+      if (!normal) tolerate(piece.wild_normals, place);
       obj.normals.push_back(normal.value_or(glm::vec3{0.0f}));
     } else if (keyword == "f") {
+      const Counts so_far{0, piece.before.positions + obj.positions.size(),
+                          piece.before.uvs + obj.uvs.size(),
+                          piece.before.normals + obj.normals.size()};
       ObjFace face{static_cast<std::uint32_t>(obj.corners.size()), 0, state.material,
                    state.smoothing_group};
       for (auto word = next_word(line); !word.empty() && word[0] != '#'; word = next_word(line)) {
@@ -222,45 +296,186 @@ ObjText parse_obj_text(std::string_view text, const std::string& file, glm::dvec
           fail(place, "the face has more than " + std::to_string(kMaxFaceCorners) +
                           " corners; smaller faces would do");
         }
-        obj.corners.push_back(read_corner(place, word, obj));
+        obj.corners.push_back(read_corner(place, word, so_far));
       }
       if (face.corner_count < 3) {
-        tolerate(short_faces, place);
+        tolerate(piece.short_faces, place);
         obj.corners.resize(face.first_corner);
         continue;
       }
       obj.faces.push_back(face);
-      face_lines.push_back(place.line);
+      piece.face_lines.push_back(place.line);
     } else if (keyword == "usemtl") {
+      if (!piece.faces_before_material) piece.faces_before_material = obj.faces.size();
       const std::string name{trimmed(line)};
       const auto [entry, is_new] =
           number_of_material.emplace(name, static_cast<std::int32_t>(obj.material_names.size()));
       if (is_new) obj.material_names.push_back(name);
       state.material = entry->second;
     } else if (keyword == "mtllib") {
-      const std::string library{trimmed(line)};
-      if (known_libraries.insert(library).second) obj.libraries.push_back(library);
+      obj.libraries.emplace_back(trimmed(line));
     } else if (keyword == "s") {
+      if (!piece.faces_before_group) piece.faces_before_group = obj.faces.size();
       const std::string_view group = next_word(line);
       state.smoothing_group = 0;  // for `off` too
       std::from_chars(group.data(), group.data() + group.size(), state.smoothing_group);
       obj.has_smoothing_groups = true;
     }
   }
+  piece.last_material = state.material;
+  piece.last_group = state.smoothing_group;
+}
 
-  // At the end only: files exist in which faces come before their vertices.
-  for (std::size_t i = 0; i < obj.faces.size(); ++i) {
-    place.line = face_lines[i];
-    for (std::uint32_t k = 0; k < obj.faces[i].corner_count; ++k) {
-      ObjCorner& corner = obj.corners[obj.faces[i].first_corner + k];
-      check_index(place, corner.position, obj.positions.size(), "position");
-      if (corner.uv >= 0 && static_cast<std::size_t>(corner.uv) >= obj.uvs.size()) {
-        tolerate(missing_uvs, place);
+// Materials by numbers of the whole text, and what the pieces before say of the first faces.
+void settle_states(std::vector<Piece>& pieces, ObjText& obj) {
+  std::unordered_map<std::string, std::int32_t> number_of_material;
+  std::unordered_set<std::string> known_libraries;
+  FaceState state;
+  for (Piece& piece : pieces) {
+    std::vector<std::int32_t> numbers;
+    for (const std::string& name : piece.obj.material_names) {
+      const auto [entry, is_new] =
+          number_of_material.emplace(name, static_cast<std::int32_t>(obj.material_names.size()));
+      if (is_new) obj.material_names.push_back(name);
+      numbers.push_back(entry->second);
+    }
+    const std::size_t face_count = piece.obj.faces.size();
+    const std::size_t other_material = piece.faces_before_material.value_or(face_count);
+    const std::size_t other_group = piece.faces_before_group.value_or(face_count);
+    for (std::size_t i = 0; i < face_count; ++i) {
+      ObjFace& face = piece.obj.faces[i];
+      face.material =
+          i < other_material ? state.material : numbers[static_cast<std::size_t>(face.material)];
+      if (i < other_group) face.smoothing_group = state.smoothing_group;
+    }
+    if (piece.faces_before_material) {
+      state.material = numbers[static_cast<std::size_t>(piece.last_material)];
+    }
+    if (piece.faces_before_group) state.smoothing_group = piece.last_group;
+    for (std::string& library : piece.obj.libraries) {
+      if (known_libraries.insert(library).second) obj.libraries.push_back(std::move(library));
+    }
+    obj.has_smoothing_groups = obj.has_smoothing_groups || piece.obj.has_smoothing_groups;
+  }
+}
+
+template <class Value>
+void put(const std::vector<Value>& from, std::vector<Value>& to, std::size_t first) {
+  std::copy(from.begin(), from.end(), to.begin() + static_cast<std::ptrdiff_t>(first));
+}
+
+// At the end only: files exist in which faces come before their vertices.
+void check_faces(Piece& piece, Place place, const Counts& all) {
+  for (std::size_t i = 0; i < piece.obj.faces.size(); ++i) {
+    place.line = piece.face_lines[i];
+    const ObjFace& face = piece.obj.faces[i];
+    for (std::uint32_t k = 0; k < face.corner_count; ++k) {
+      ObjCorner& corner = piece.obj.corners[face.first_corner + k];
+      check_index(place, corner.position, all.positions, "position");
+      if (corner.uv >= 0 && static_cast<std::size_t>(corner.uv) >= all.uvs) {
+        tolerate(piece.missing_uvs, place);
         corner.uv = -1;
       }
-      check_index(place, corner.normal, obj.normals.size(), "normal");
+      check_index(place, corner.normal, all.normals, "normal");
     }
   }
+}
+
+// Joins what the pieces have, each at its place.
+void join_pieces(std::vector<Piece>& pieces, const Counts& all, ObjText& obj, ThreadPool& pool) {
+  std::vector<std::size_t> first_corners, first_faces;
+  std::size_t corner_count = 0, face_count = 0;
+  bool has_colours = false;
+  for (const Piece& piece : pieces) {
+    first_corners.push_back(corner_count);
+    first_faces.push_back(face_count);
+    corner_count += piece.obj.corners.size();
+    face_count += piece.obj.faces.size();
+    has_colours = has_colours || !piece.obj.colours.empty();
+  }
+  obj.positions.resize(all.positions);
+  obj.uvs.resize(all.uvs);
+  obj.normals.resize(all.normals);
+  obj.corners.resize(corner_count);
+  obj.faces.resize(face_count);
+  if (has_colours) obj.colours.resize(all.positions, glm::vec3{1.0f});
+  pool.for_each(static_cast<int>(pieces.size()), [&](int i) {
+    const auto number = static_cast<std::size_t>(i);
+    ObjText part = std::move(pieces[number].obj);
+    const Counts& before = pieces[number].before;
+    for (ObjFace& face : part.faces) {
+      face.first_corner += static_cast<std::uint32_t>(first_corners[number]);
+    }
+    put(part.positions, obj.positions, before.positions);
+    put(part.colours, obj.colours, before.positions);
+    put(part.uvs, obj.uvs, before.uvs);
+    put(part.normals, obj.normals, before.normals);
+    put(part.corners, obj.corners, first_corners[number]);
+    put(part.faces, obj.faces, first_faces[number]);
+  });
+}
+
+Tolerated sum_of(const std::vector<Piece>& pieces, Tolerated Piece::*kind) {
+  Tolerated sum;
+  for (const Piece& piece : pieces) {
+    const Tolerated& more = piece.*kind;
+    if (sum.count == 0) sum.first_line = more.first_line;
+    sum.count += more.count;
+  }
+  return sum;
+}
+
+// Does something with each piece, and throws the error of the first that has one.
+template <class Work>
+void for_each_piece(std::vector<Piece>& pieces, ThreadPool& pool, const Work& work) {
+  pool.for_each(static_cast<int>(pieces.size()), [&](int i) {
+    Piece& piece = pieces[static_cast<std::size_t>(i)];
+    try {
+      work(piece);
+    } catch (...) {
+      piece.error = std::current_exception();
+    }
+  });
+  for (const Piece& piece : pieces) {
+    if (piece.error) std::rethrow_exception(piece.error);
+  }
+}
+
+}  // namespace
+
+ObjText parse_obj_text(std::string_view text, const std::string& file, glm::dvec3 origin,
+                       ThreadPool* pool) {
+  if (pool == nullptr) {
+    ThreadPool here{1};
+    return parse_obj_text(text, file, origin, &here);
+  }
+  Place place{file};
+  if (text.find('\0') != std::string_view::npos) {
+    throw SceneError(file + ": is binary; an OBJ model is text");
+  }
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark
+  std::vector<Piece> pieces = cut_into_pieces(text);
+  // Indices may count back from the face.
+  std::vector<Counts> counts(pieces.size());
+  pool->for_each(static_cast<int>(pieces.size()), [&](int i) {
+    const auto number = static_cast<std::size_t>(i);
+    counts[number] = count_lines(pieces[number].text);
+  });
+  Counts all;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    pieces[i].before = all;
+    all.lines += counts[i].lines;
+    all.positions += counts[i].positions;
+    all.uvs += counts[i].uvs;
+    all.normals += counts[i].normals;
+  }
+  for_each_piece(pieces, *pool, [&](Piece& piece) { read_piece(piece, place, origin); });
+  for_each_piece(pieces, *pool, [&](Piece& piece) { check_faces(piece, place, all); });
+
+  ObjText obj;
+  settle_states(pieces, obj);
+  join_pieces(pieces, all, obj, *pool);
+  const Tolerated short_faces = sum_of(pieces, &Piece::short_faces);
   if (obj.faces.empty() && short_faces.count > 0) {
     place.line = short_faces.first_line;
     fail(place,
@@ -271,16 +486,19 @@ ObjText parse_obj_text(std::string_view text, const std::string& file, glm::dvec
   }
   warn(obj, place, short_faces, "a face has fewer than 3 corners and is left out",
        " faces have fewer than 3 corners and are left out");
-  warn(obj, place, wild_uvs, "a texture coordinate is out of range; 0 stands in",
+  warn(obj, place, sum_of(pieces, &Piece::wild_uvs),
+       "a texture coordinate is out of range; 0 stands in",
        " texture coordinates are out of range; 0 stands in");
-  warn(obj, place, wild_normals, "a normal is no direction and is left out",
+  warn(obj, place, sum_of(pieces, &Piece::wild_normals), "a normal is no direction and is left out",
        " normals are no directions and are left out");
+  const Tolerated bright_colours = sum_of(pieces, &Piece::bright_colours);
   if (bright_colours.count > 0) {
     for (glm::vec3& colour : obj.colours) colour /= 255.0f;
     warn(obj, place, bright_colours, "a colour is beyond 1: colours are taken for 0 to 255",
          " colours are beyond 1: they are taken for 0 to 255");
   }
-  warn(obj, place, missing_uvs, "a corner's texture coordinate is not there; it gets none",
+  warn(obj, place, sum_of(pieces, &Piece::missing_uvs),
+       "a corner's texture coordinate is not there; it gets none",
        " corners' texture coordinates are not there; they get none");
   return obj;
 }

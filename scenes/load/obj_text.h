@@ -13,6 +13,8 @@
 #include <string_view>
 #include <vector>
 
+#include "raster/threads/parallel.h"
+
 namespace softfocus {
 
 /// Indices from 0; -1 where the file gives none.
@@ -58,7 +60,8 @@ inline constexpr float kLargestCoordinate = 1e9f;
 ///   colours beyond 1                                 are taken for 0 to 255
 /// Throws SceneError for what is not text, a position that is none, another index out of range, a
 /// face of too many corners, and a file without a face.
+/// `pool`, if any, reads pieces of the text side by side.
 ObjText parse_obj_text(std::string_view text, const std::string& file,
-                       glm::dvec3 origin = glm::dvec3{0.0});
+                       glm::dvec3 origin = glm::dvec3{0.0}, ThreadPool* pool = nullptr);
 
 }  // namespace softfocus

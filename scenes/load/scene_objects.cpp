@@ -59,19 +59,20 @@ std::uint32_t read_material_key(Section& section, const NamedSurfaces& surfaces)
 }
 
 void read_model(Section& section, const std::filesystem::path& directory,
-                const NamedSurfaces& surfaces, Scene& scene) {
+                const NamedSurfaces& surfaces, Scene& scene, ThreadPool* pool) {
   if (!has_key(section, "file")) {
     fail_at(section, "file", "is missing; the path of an OBJ file would be right");
   }
   const Object placement = read_placement(section);
   std::optional<std::uint32_t> material;
   if (has_key(section, "material")) material = read_material_key(section, surfaces);
-  add_model(scene, load_obj_model(directory / read_text(section, "file", "")), placement, material);
+  add_model(scene, load_obj_model(directory / read_text(section, "file", ""), pool), placement,
+            material);
 }
 
 void read_object(Section& section, const std::filesystem::path& directory,
-                 const NamedSurfaces& surfaces, Scene& scene) {
-  if (is_model(section)) return read_model(section, directory, surfaces, scene);
+                 const NamedSurfaces& surfaces, Scene& scene, ThreadPool* pool) {
+  if (is_model(section)) return read_model(section, directory, surfaces, scene, pool);
   Object object = read_placement(section);
   object.material = read_material_key(section, surfaces);
   object.mesh = add_mesh(section, scene, read_shape(section));
@@ -149,9 +150,9 @@ void read_balls(Section& section, const NamedSurfaces& surfaces, std::vector<Bal
 }  // namespace
 
 void read_objects(Section& top, const std::filesystem::path& directory,
-                  const NamedSurfaces& surfaces, Scene& scene) {
+                  const NamedSurfaces& surfaces, Scene& scene, ThreadPool* pool) {
   for (Section& section : read_sections(top, "object")) {
-    read_object(section, directory, surfaces, scene);
+    read_object(section, directory, surfaces, scene, pool);
     finish_section(section);
   }
   std::vector<Ball> placed;

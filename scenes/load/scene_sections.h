@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "raster/threads/parallel.h"
 #include "scenes/load/toml_reading.h"
 #include "scenes/scene.h"
 
@@ -27,8 +28,9 @@ struct NamedSurfaces {
   std::map<std::uint32_t, std::uint32_t> opacity_of_texture;
 };
 
-/// Reads the [texture.NAME] and [material.NAME] tables into the scene.
-NamedSurfaces read_surfaces(Section& top, const std::filesystem::path& directory, Scene& scene);
+/// Reads the [texture.NAME] and [material.NAME] tables into the scene. `pool` may be null.
+NamedSurfaces read_surfaces(Section& top, const std::filesystem::path& directory, Scene& scene,
+                            ThreadPool* pool);
 
 /// The number of the material that `key` names.
 std::uint32_t material_named(const Section& section, std::string_view key, const std::string& name,
@@ -58,8 +60,9 @@ double bounding_radius(const Mesh& mesh);
 
 // --- scene_objects.cpp ---
 
-/// Reads the [[object]] and then the [[scatter]] tables into the scene, in the file's order.
+/// Reads the [[object]] and then the [[scatter]] tables into the scene, in the file's order. `pool`
+/// may be null.
 void read_objects(Section& top, const std::filesystem::path& directory,
-                  const NamedSurfaces& surfaces, Scene& scene);
+                  const NamedSurfaces& surfaces, Scene& scene, ThreadPool* pool);
 
 }  // namespace softfocus

@@ -4,7 +4,6 @@
 #include <bit>
 #include <limits>
 #include <map>
-#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -20,8 +19,9 @@ namespace {
 constexpr std::size_t kMaxTextures = 64;
 constexpr int kMaxProceduralSize = 2048;
 
-constexpr std::array<std::string_view, 3> kFilters = {"nearest", "bilinear", "trilinear"};
-constexpr std::array<std::string_view, 3> kWraps = {"repeat", "mirrored_repeat", "clamp_to_edge"};
+constexpr std::array<std::string_view, 3> kTextureFilters = {"nearest", "bilinear", "trilinear"};
+constexpr std::array<std::string_view, 3> kTextureWraps = {"repeat", "mirrored_repeat",
+                                                           "clamp_to_edge"};
 
 // Stands for a texture that no object shows: it is checked, and not made.
 constexpr std::uint32_t kNotMade = std::numeric_limits<std::uint32_t>::max();
@@ -60,7 +60,7 @@ UsedNames used_names(const Section& top) {
   return used;
 }
 
-std::optional<Texture> read_procedural_texture(Section& section, bool is_used) {
+ProceduralTexture read_procedural_texture(Section& section) {
   std::vector<std::string_view> names;
   for (const TexturePattern& pattern : texture_patterns()) names.push_back(pattern.name);
   const TexturePattern& pattern = texture_patterns()[read_choice(section, "kind", 0, names)];
@@ -85,23 +85,34 @@ std::optional<Texture> read_procedural_texture(Section& section, bool is_used) {
                 std::string(pattern.colours) + "), each [red, green, blue] from 0 to 1");
   }
   for (const auto& row : rows) recipe.colours.emplace_back(glm::dvec3{row[0], row[1], row[2]});
-  if (!is_used) return std::nullopt;
-  return make_procedural_texture(pattern, recipe);
+  return {&pattern, std::move(recipe)};
 }
 
-std::optional<Texture> read_texture(Section& section, const std::filesystem::path& directory,
-                                    bool is_used, Scene& scene) {
+// Textures that are made once all are known, and their places in the scene.
+struct WantedTextures {
+  std::vector<ProceduralTexture> recipes;
+  std::vector<std::size_t> places;
+};
+
+void read_texture(Section& section, const std::filesystem::path& directory, bool is_used,
+                  Scene& scene, WantedTextures& wanted) {
   const bool has_kind = has_key(section, "kind");
   const bool has_file = has_key(section, "file");
   if (has_kind == has_file) {
     fail_at(section, has_kind ? "file" : "",
             "a texture has either a `kind` (made by formula) or a `file` (PNG or JPEG)");
   }
-  if (has_kind) return read_procedural_texture(section, is_used);
+  if (has_kind) {
+    ProceduralTexture made = read_procedural_texture(section);
+    if (!is_used) return;
+    wanted.recipes.push_back(std::move(made));
+    wanted.places.push_back(scene.textures.size());
+    scene.textures.emplace_back();
+    return;
+  }
   // Used or not, no picture may be written over it.
   scene.files.push_back(directory / read_text(section, "file", ""));
-  if (!is_used) return std::nullopt;
-  return load_texture(scene.files.back());
+  if (is_used) scene.textures.push_back(load_texture(scene.files.back()));
 }
 
 /// What `key` names among the tables [kind.NAME].
@@ -170,7 +181,8 @@ Material read_material(Section& section, const std::string& name, NamedSurfaces&
 
 }  // namespace
 
-NamedSurfaces read_surfaces(Section& top, const std::filesystem::path& directory, Scene& scene) {
+NamedSurfaces read_surfaces(Section& top, const std::filesystem::path& directory, Scene& scene,
+                            ThreadPool* pool) {
   NamedSurfaces surfaces;
   auto textures = read_named_sections(top, "texture");
   if (textures.size() > kMaxTextures) {
@@ -179,19 +191,22 @@ NamedSurfaces read_surfaces(Section& top, const std::filesystem::path& directory
                 std::to_string(kMaxTextures) + " would do");
   }
   const UsedNames used = used_names(top);
+  WantedTextures wanted;
   for (auto& [name, section] : textures) {
     Sampler sampler{Filter::trilinear, Wrap::repeat, Wrap::repeat};
     sampler.filter = static_cast<Filter>(
-        read_choice(section, "filter", static_cast<std::size_t>(sampler.filter), kFilters));
+        read_choice(section, "filter", static_cast<std::size_t>(sampler.filter), kTextureFilters));
     sampler.wrap_u = sampler.wrap_v = static_cast<Wrap>(
-        read_choice(section, "wrap", static_cast<std::size_t>(sampler.wrap_u), kWraps));
-    std::optional<Texture> texture =
-        read_texture(section, directory, used.textures.contains(name), scene);
+        read_choice(section, "wrap", static_cast<std::size_t>(sampler.wrap_u), kTextureWraps));
+    const bool is_used = used.textures.contains(name);
+    const auto index = static_cast<std::uint32_t>(scene.textures.size());
+    read_texture(section, directory, is_used, scene, wanted);
     finish_section(section);
-    surfaces.textures[name] = {kNotMade, sampler};
-    if (!texture) continue;
-    surfaces.textures[name].index = static_cast<std::uint32_t>(scene.textures.size());
-    scene.textures.push_back(std::move(*texture));
+    surfaces.textures[name] = {is_used ? index : kNotMade, sampler};
+  }
+  std::vector<Texture> made = make_procedural_textures(wanted.recipes, pool);
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    scene.textures[wanted.places[i]] = std::move(made[i]);
   }
   for (auto& [name, section] : read_named_sections(top, "material")) {
     Material material = read_material(section, name, surfaces, scene);

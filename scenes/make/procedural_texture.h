@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "raster/images/sampler.h"
+#include "raster/threads/parallel.h"
 
 namespace softfocus {
 
@@ -48,8 +49,18 @@ std::span<const TexturePattern> texture_patterns();
 /// The pattern of that name, or nullptr.
 const TexturePattern* find_texture_pattern(std::string_view name);
 
-/// The texture with all its mipmaps (of the ieee profile). Each texel is the mean of
-/// the pattern at 2x2 points in it. Needs a recipe within the limits above.
+struct ProceduralTexture {
+  const TexturePattern* pattern;
+  TextureRecipe recipe;
+};
+
+/// The textures with all their mipmaps (of the ieee profile). Each texel is the mean of
+/// the pattern at 2x2 points in it. Needs recipes within the limits above. Without a pool on this
+/// thread.
+std::vector<Texture> make_procedural_textures(std::span<const ProceduralTexture> wanted,
+                                              ThreadPool* pool);
+
+/// One, on this thread.
 Texture make_procedural_texture(const TexturePattern& pattern, const TextureRecipe& recipe);
 
 }  // namespace softfocus

@@ -195,7 +195,7 @@ void set_lens(Stage& stage, double foreground_m) {
 
 std::span<const std::string_view> random_scene_classes() { return kClasses; }
 
-Scene make_random_scene(std::uint64_t seed) {
+Scene make_random_scene(std::uint64_t seed, ThreadPool* pool) {
   Stage stage;
   stage.random.state = mix_bits(seed);
   const auto of = static_cast<Class>(next_bits(stage.random) % kClasses.size());
@@ -206,6 +206,7 @@ Scene make_random_scene(std::uint64_t seed) {
   set_lights(stage);
   const double foreground_m = add_parts(stage, of);
   set_lens(stage, foreground_m);
+  stage.scene.textures = make_procedural_textures(stage.textures, pool);
   return std::move(stage.scene);
 }
 

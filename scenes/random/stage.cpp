@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "raster/numbers/exact_math.h"
-#include "scenes/make/procedural_texture.h"
 
 namespace softfocus {
 namespace {
@@ -16,8 +15,8 @@ std::uint32_t any_texture(Stage& stage, const TextureChoice& choice) {
   for (std::size_t i = 0; i < pattern.colour_count; ++i) {
     recipe.colours.push_back(any_colour(stage, 0.95));
   }
-  stage.scene.textures.push_back(make_procedural_texture(pattern, recipe));
-  return static_cast<std::uint32_t>(stage.scene.textures.size() - 1);
+  stage.textures.push_back({&pattern, std::move(recipe)});
+  return static_cast<std::uint32_t>(stage.textures.size() - 1);
 }
 
 }  // namespace

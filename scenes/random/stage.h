@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 
 #include "raster/numbers/random_bits.h"
+#include "scenes/make/procedural_texture.h"
 #include "scenes/scene.h"
 
 namespace softfocus {
@@ -14,6 +15,7 @@ namespace softfocus {
 /// The floor is y = 0. The camera looks along -z, and down on the subject.
 struct Stage {
   Scene scene;
+  std::vector<ProceduralTexture> textures;  ///< the scene's, which are made at the end
   RandomSequence random;
   double subject_m = 1.0;       ///< the subject's distance along the axis
   double subject_height = 0.3;  ///< it stands on the floor, in the middle of the picture

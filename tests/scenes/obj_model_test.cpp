@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -51,6 +52,61 @@ TEST_CASE("numbers are the floats nearest to their decimals") {
   const ObjText obj = parse("v 0.1 -1e-3 +2.5\nv 16777217 1e-50 3.4028e-39\nv 0 1 0\nf 1 2 3\n");
   CHECK(obj.positions[0] == glm::vec3{0.1f, -1e-3f, 2.5f});
   CHECK(obj.positions[1] == glm::vec3{16777216.0f, 0.0f, 3.4028e-39f});
+}
+
+namespace {
+
+// A long text that is read in pieces: 60000 triangles of their own corners, counted back, of one
+// material and smoothing group in a thousand.
+constexpr std::size_t kLongFaces = 60000;
+
+std::string long_text() {
+  std::string text = "mtllib a.mtl\n";
+  for (std::size_t i = 0; i < kLongFaces; ++i) {
+    const std::string number = std::to_string(i);
+    text += "v " + number + " 0 0\nv " + number + " 1 0 # the second\nv " + number + " 0 1\n";
+    if (i % 1000 == 500) text += "usemtl m" + number + "\ns " + number + "\n";
+    text += i % 7 == 0 ? "f -3 -2 \\\n -1\n" : "f -3 -2 -1\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("a long text has the same numbers, materials and groups in pieces") {
+  const std::string text = long_text();
+  REQUIRE(text.size() > std::size_t{3} << 20);
+  ThreadPool pool{3};
+  const ObjText obj = parse_obj_text(text, "a.obj", {}, &pool);
+  REQUIRE(obj.faces.size() == kLongFaces);
+  REQUIRE(obj.positions.size() == 3 * kLongFaces);
+  REQUIRE(obj.material_names.size() == kLongFaces / 1000);
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < kLongFaces; ++i) {
+    const ObjFace& face = obj.faces[i];
+    const auto set = static_cast<std::int32_t>((i + 500) / 1000) - 1;
+    const std::uint32_t group = set < 0 ? 0 : static_cast<std::uint32_t>(set * 1000 + 500);
+    wrong += face.first_corner != 3 * i || face.corner_count != 3 || face.material != set ||
+             face.smoothing_group != group;
+    for (std::size_t k = 0; k < 3; ++k) {
+      wrong += obj.corners[3 * i + k].position != static_cast<std::int32_t>(3 * i + k);
+    }
+    wrong += obj.positions[3 * i + 1] != glm::vec3{static_cast<float>(i), 1.0f, 0.0f};
+  }
+  CHECK(wrong == 0);
+  CHECK(obj.libraries == std::vector<std::string>{"a.mtl"});
+}
+
+TEST_CASE("the first error of a long text is told, with its line") {
+  std::string text = long_text();
+  const auto line_of = [&](std::size_t place) {
+    return std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(place), '\n') + 1;
+  };
+  for (const std::size_t after : {text.size() - 100, text.size() / 2, std::size_t{5000}}) {
+    const std::size_t place = text.find("\nv ", after) + 1;
+    text.replace(place, 3, "v x");
+    CHECK(complaint(text).starts_with("a.obj:" + std::to_string(line_of(place)) + ": \"x"));
+  }
 }
 
 TEST_CASE("corners may have texture coordinates and normals, or leave them out") {

@@ -2,11 +2,13 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <bit>
 #include <string>
 
 #include "raster/images/texel.h"
 #include "raster/numbers/hash.h"
+#include "raster/numbers/random_bits.h"
 
 using namespace softfocus;
 
@@ -118,6 +120,46 @@ TEST_CASE("another seed gives another marble, the same seed the same") {
   CHECK(hash_image(make_procedural_texture(pattern, recipe).levels[0]) == once);
   recipe.seed = 2;
   CHECK(hash_image(make_procedural_texture(pattern, recipe).levels[0]) != once);
+}
+
+TEST_CASE("textures have the same bytes on every unit and any number of threads") {
+  RandomSequence random{7};
+  std::vector<ProceduralTexture> wanted;
+  for (int i = 0; i < 48; ++i) {
+    const TexturePattern& pattern =
+        texture_patterns()[static_cast<std::size_t>(i) % texture_patterns().size()];
+    TextureRecipe recipe;
+    recipe.size = 1 << next_bits(random) % 8;
+    recipe.cells = 1 << next_bits(random) % 9;
+    if (i % 3 > 0) recipe.cells = 1 + static_cast<int>(next_bits(random) % 20);
+    recipe.seed = next_bits(random) % 100;
+    for (std::size_t c = 0; c < pattern.colour_count; ++c) {
+      glm::vec3 colour;
+      for (int k = 0; k < 3; ++k) {
+        const double value = std::clamp(next_between(random, -0.2, 1.2), 0.0, 1.0);
+        colour[k] = static_cast<float>(value);
+      }
+      recipe.colours.push_back(colour);
+    }
+    wanted.push_back({&pattern, recipe});
+  }
+  ThreadPool oracle{1, Isa::scalar};
+  const std::vector<Texture> expected = make_procedural_textures(wanted, &oracle);
+  for (const Isa isa : available_isas()) {
+    CAPTURE(isa_name(isa));
+    ThreadPool pool{3, isa};
+    const std::vector<Texture> made = make_procedural_textures(wanted, &pool);
+    REQUIRE(made.size() == expected.size());
+    for (std::size_t i = 0; i < made.size(); ++i) {
+      CAPTURE(wanted[i].pattern->name);
+      CAPTURE(wanted[i].recipe.size);
+      CAPTURE(wanted[i].recipe.cells);
+      REQUIRE(made[i].levels.size() == expected[i].levels.size());
+      for (std::size_t level = 0; level < made[i].levels.size(); ++level) {
+        CHECK(equal(made[i].levels[level], expected[i].levels[level]));
+      }
+    }
+  }
 }
 
 TEST_CASE("a texture of one texel has one level") {

@@ -1,6 +1,8 @@
 // softfocus bench: how long a frame takes here, and on a GL driver in turn.
 
 #include <algorithm>
+#include <chrono>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 
@@ -15,6 +17,7 @@
 #include "tools/bench/report.h"
 #include "tools/bench/work.h"
 #include "tools/cli/commands.h"
+#include "tools/cli/platform.h"
 #include "tools/cli/progress.h"
 #include "tools/cli/timing.h"
 
@@ -204,6 +207,39 @@ BenchRecord bench_arithmetic(const BenchOptions& options, const BenchWork& work,
           BenchPeer{"float", "the same filter in binary32", !bytes && equal(ours, theirs)}};
 }
 
+/// The whole command that makes the frame, from a process's start to a PNG; with the scene's own
+/// lens. Nothing where the program cannot run itself.
+std::optional<StageSamples> time_command(const BenchOptions& options,
+                                         const std::function<void(int run)>& on_run) {
+  const auto program = own_program();
+  if (options.scene.empty() || !program || program->stem() != "softfocus") return std::nullopt;
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() /
+      ("softfocus-bench-" + std::to_string(process_number()) + ".png");
+  std::vector<std::string> words{"render",    options.scene,
+                                 "-o",        file.string(),
+                                 "--size",    size_text(options.size),
+                                 "--method",  std::string{options.method.name()},
+                                 "--frame",   short_number(options.frame),
+                                 "--profile", options.profile_name,
+                                 "--threads", std::to_string(options.pool.threads),
+                                 "--isa",     std::string{isa_name(options.pool.isa)}};
+  for (const auto& directory : options.scene_path) {
+    words.insert(words.end(), {"--scene-path", directory.string()});
+  }
+  StageSamples samples{"command", {}};
+  for (int run = -1; run < options.runs; ++run) {  // one without a clock
+    if (run >= 0) on_run(run);
+    const auto start = std::chrono::steady_clock::now();
+    if (run_quietly(*program, words) != 0) return std::nullopt;
+    const std::chrono::duration<double, std::milli> ms = std::chrono::steady_clock::now() - start;
+    if (run >= 0) samples.ms.push_back(ms.count());
+  }
+  std::error_code ignored;
+  std::filesystem::remove(file, ignored);
+  return samples;
+}
+
 int bench(const BenchOptions& options) {
   Progress progress{options.quiet};
   const auto show_run = [&](int run) {
@@ -254,7 +290,11 @@ int bench(const BenchOptions& options) {
   BenchRecord record{options, work, time_in_pairs(ours, peers, options.runs, show_run),
                      peer,    {},   frame.filtered.sampled ? frame.filtered.sampled->samples : 0};
   if (frame.filtered.chosen) record.choice = frame.filtered.chosen->choice;
-  if (on_gl) keep_faster_form(record, on_gl->forms());
+  if (on_gl) {
+    keep_faster_form(record, on_gl->forms());
+  } else if (auto command = time_command(options, show_run)) {
+    record.samples.ours.push_back(std::move(*command));
+  }
   progress.clear();
   print(record);
   return kDone;

@@ -56,7 +56,7 @@ ChartScene load_chart_scene(const std::string& name, const ChartOptions& options
                             ThreadPool& pool) {
   ChartScene chart;
   const auto [width, height] = options.size;
-  chart.scene = load_scene(name, scene_search_path(options.scene_path));
+  chart.scene = load_scene(name, scene_search_path(options.scene_path), &pool);
   print_scene_warnings(chart.scene.warnings, false);
   chart.subject = options.subject;
   prepare_for(*options.subject, chart);

@@ -14,10 +14,12 @@
 #else
 #include <fcntl.h>
 #include <poll.h>
+#include <spawn.h>
 #include <sys/file.h>
 #include <sys/ioctl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -126,6 +128,10 @@ bool sync_file(int descriptor) { return ::_commit(descriptor) == 0; }
 
 bool close_file(int descriptor) { return ::_close(descriptor) == 0; }
 
+std::optional<int> run_quietly(const std::filesystem::path&, const std::vector<std::string>&) {
+  return std::nullopt;
+}
+
 #else
 
 void prepare_process() {
@@ -222,7 +228,37 @@ bool sync_file(int descriptor) {
 
 bool close_file(int descriptor) { return ::close(descriptor) == 0; }
 
+std::optional<int> run_quietly(const std::filesystem::path& program,
+                               const std::vector<std::string>& words) {
+  std::string name = program.string();
+  std::vector<std::string> texts = words;
+  std::vector<char*> arguments{name.data()};
+  for (std::string& text : texts) arguments.push_back(text.data());
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t actions{};
+  if (::posix_spawn_file_actions_init(&actions) != 0) return std::nullopt;
+  for (const int descriptor : {kStandardOutput, kStandardError}) {
+    ::posix_spawn_file_actions_addopen(&actions, descriptor, "/dev/null", O_WRONLY, 0);
+  }
+  pid_t process = 0;
+  const bool begun =
+      ::posix_spawn(&process, name.c_str(), &actions, nullptr, arguments.data(), ::environ) == 0;
+  ::posix_spawn_file_actions_destroy(&actions);
+  int status = 0;
+  if (!begun) return std::nullopt;
+  while (::waitpid(process, &status, 0) < 0) {
+    if (errno != EINTR) return std::nullopt;
+  }
+  return WIFEXITED(status) ? std::optional{WEXITSTATUS(status)} : std::nullopt;
+}
+
 #endif
+
+std::optional<std::filesystem::path> own_program() {
+  std::error_code unknown;
+  const std::filesystem::path file = std::filesystem::read_symlink("/proc/self/exe", unknown);
+  return unknown ? std::nullopt : std::optional{file};
+}
 
 std::optional<std::string> cpu_name() {
   std::ifstream file{"/proc/cpuinfo"};

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace softfocus {
 
@@ -75,6 +76,14 @@ bool sync_file(int descriptor);
 
 /// Closes a descriptor; false with errno set if what was written is lost.
 bool close_file(int descriptor);
+
+/// Runs `program` with these words, and none of their output. Its exit status; nullopt where it
+/// cannot be run.
+std::optional<int> run_quietly(const std::filesystem::path& program,
+                               const std::vector<std::string>& words);
+
+/// The file of the running program, where Linux tells it.
+std::optional<std::filesystem::path> own_program();
 
 /// The processor's name, where Linux tells it in /proc/cpuinfo.
 std::optional<std::string> cpu_name();

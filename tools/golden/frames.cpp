@@ -228,7 +228,7 @@ NamedHash terminator_hash(std::string_view name, Scene scene, Terminator rule,
 }
 
 std::vector<NamedHash> few_frame_hashes(std::string_view name, ThreadPool& pool) {
-  const Scene scene = load_scene(name, scene_search_path({}));
+  const Scene scene = load_scene(name, scene_search_path({}), &pool);
   const auto [width, height] = kSizes[1];
   const Profile profile;
   const DrawnScene made = drawn_scene(scene, kSizes[1], profile, pool);
@@ -266,12 +266,10 @@ std::span<const FrameSize> golden_sizes(GoldenSet set) {
 }
 
 std::vector<GoldenScene> load_golden_scenes(ThreadPool& pool) {
-  std::vector<GoldenScene> scenes(kScenes.size());
-  pool.for_each(static_cast<int>(scenes.size()), [&](int i) {
-    const std::string_view name = kScenes[static_cast<std::size_t>(i)];
-    scenes[static_cast<std::size_t>(i)] = {std::string{name},
-                                           load_scene(name, scene_search_path({}))};
-  });
+  std::vector<GoldenScene> scenes;
+  for (const std::string_view name : kScenes) {
+    scenes.push_back({std::string{name}, load_scene(name, scene_search_path({}), &pool)});
+  }
   return scenes;
 }
 

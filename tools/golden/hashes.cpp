@@ -81,7 +81,7 @@ std::vector<GoldenPart> first_parts(GoldenSet set) {
         parts.push_back(
             {branch_of(name, profile.name), [name, loaded, &size, &profile](ThreadPool& pool) {
                if (loaded->name.empty()) {
-                 *loaded = {std::string{name}, load_scene(name, scene_search_path({}))};
+                 *loaded = {std::string{name}, load_scene(name, scene_search_path({}), &pool)};
                }
                return frame_hashes(*loaded, size, profile, pool);
              }});

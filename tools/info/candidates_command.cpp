@@ -58,7 +58,7 @@ struct Subject {
 
 Subject make_subject(const CandidatesOptions& options, ThreadPool& pool) {
   Subject subject;
-  subject.scene = load_scene(options.scene, scene_search_path(options.scene_path));
+  subject.scene = load_scene(options.scene, scene_search_path(options.scene_path), &pool);
   const auto [width, height] = options.size;
   const Scene& scene = subject.scene;
   print_scene_warnings(scene.warnings, false);

@@ -2,6 +2,7 @@
 // OpenEXR, where the build has the library.
 
 #include <cstring>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "dof/lens.h"
+#include "raster/threads/parallel.h"
 #include "tools/files/byte_source.h"
 #include "tools/pictures/image_file.h"
 
@@ -41,13 +43,16 @@ struct PictureExtras {
   std::string view{};                         ///< of the picture, if the planes are of others
   int light_power = 0;  ///< colours are multiplied by 2^light_power: of an EXR in floats then
   std::span<const std::byte> icc{};  ///< a profile of the colours, for a PNG
+  ThreadPool* pool = nullptr;        ///< whose threads encode, if any
 };
 
 /// An RGBA16F picture: R, G, B in halves or floats, and alpha, the depth in metres, as the float
 /// channel Z. `notes`, if any, become the attribute `softfocus`. ZIP-compressed: the values are the
-/// same everywhere, the file's bytes are zlib's. Throws FileError.
+/// same everywhere, the file's bytes are zlib's. `notes_after`: see PictureToWrite. Throws
+/// FileError.
 Bytes encode_exr(const Image& image, ExrNumbers numbers, const std::string& notes,
-                 const PictureExtras& extras = {});
+                 const PictureExtras& extras = {},
+                 const std::function<std::string()>& notes_after = {});
 
 /// A depth in metres as the float channel Z.
 Bytes encode_depth_exr(std::span<const float> values, int width, int height);

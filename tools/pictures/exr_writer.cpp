@@ -10,6 +10,7 @@
 #include <ImfOutputFile.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
+#include <ImfThreading.h>
 
 #include <algorithm>
 #include <array>
@@ -46,7 +47,7 @@ struct ExrPlane {
 /// Calls `make` before the planes of a band are filled.
 void write_planes(const std::vector<ExrPlane>& planes, const PictureToWrite& picture,
                   Imf::Header header, const std::function<void(Rows rows)>& make,
-                  const WriteAt& write) {
+                  const WriteAt& write, ThreadPool* pool = nullptr) {
   const int width = picture.width, height = picture.height;
   header.compression() = Imf::ZIP_COMPRESSION;
   for (const ExrPlane& plane : planes) header.channels().insert(plane.name, {plane.type});
@@ -61,7 +62,10 @@ void write_planes(const std::vector<ExrPlane>& planes, const PictureToWrite& pic
   ExrOutput stream{write};
   std::optional<std::uint64_t> notes_place;
   {
-    Imf::OutputFile exr{stream, header, 1};
+    // OpenEXR has threads of its own, which wait for its next file.
+    const int threads = pool != nullptr ? pool->threads() : 1;
+    if (threads > Imf::globalThreadCount()) Imf::setGlobalThreadCount(threads);
+    Imf::OutputFile exr{stream, header, threads};
     if (picture.notes_after) notes_place = stream.find(picture.notes);
     stream.begin();
     for (int y = 0; y < height; y += band) {
@@ -94,13 +98,17 @@ ExrPlane plane_of(std::string name, const std::span<const float>& band) {
 ExrPlane plane_of(std::string name, const ConstImageView& band, std::size_t channel,
                   Imf::PixelType type, float light = 1.0f) {
   return {std::move(name), type, [&band, channel, type, light](int, int rows, std::byte* to) {
-            const std::size_t size = bytes_of(type);
             for (int y = 0; y < rows; ++y) {
               const auto from = row<std::uint16_t>(band, y);
-              for (std::size_t i = channel; i < from.size(); i += 4, to += size) {
+              if (type == Imf::HALF) {
+                for (std::size_t i = channel; i < from.size(); i += 4, to += sizeof from[i]) {
+                  std::memcpy(to, &from[i], sizeof from[i]);
+                }
+                continue;
+              }
+              for (std::size_t i = channel; i < from.size(); i += 4, to += sizeof(float)) {
                 const float value = half_to_float(from[i]) * light;
-                std::memcpy(to, type == Imf::HALF ? static_cast<const void*>(&from[i]) : &value,
-                            size);
+                std::memcpy(to, &value, sizeof value);
               }
             }
           }};
@@ -360,7 +368,8 @@ void write_exr(const PictureToWrite& picture, ExrNumbers numbers, const PictureE
     if (extras.lens) add_lens(*extras.lens, header);
     add_views(extras, header);
     write_planes(
-        planes, picture, std::move(header), [&](Rows rows) { band = picture.make(rows); }, write);
+        planes, picture, std::move(header), [&](Rows rows) { band = picture.make(rows); }, write,
+        extras.pool);
   });
 }
 
@@ -386,7 +395,7 @@ std::span<const float> rows_of(std::span<const float> plane, int width, Rows row
 }  // namespace
 
 Bytes encode_exr(const Image& image, ExrNumbers numbers, const std::string& notes,
-                 const PictureExtras& extras) {
+                 const PictureExtras& extras, const std::function<std::string()>& notes_after) {
   const auto make = [&](Rows rows) -> PictureBand {
     const auto part = [&](std::span<const float> plane) {
       return rows_of(plane, image.width, rows);
@@ -398,7 +407,8 @@ Bytes encode_exr(const Image& image, ExrNumbers numbers, const std::string& note
             part(extras.radii_px)};
   };
   Bytes bytes;
-  write_exr({image.width, image.height, make, notes}, numbers, extras, writer_to(bytes));
+  write_exr({image.width, image.height, make, notes, notes_after}, numbers, extras,
+            writer_to(bytes));
   return bytes;
 }
 

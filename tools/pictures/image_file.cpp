@@ -221,13 +221,41 @@ std::vector<std::uint16_t> srgb16_of_halves() {
 
 // A picture's colours in the sRGB curve and nothing else, as programs take them for a video.
 
+namespace {
+
+/// Fills the codes of halves between two whose codes are known: most neighbours have the same.
+void fill_codes(std::array<std::uint8_t, 65536>& codes, std::size_t low, std::size_t high) {
+  if (codes[low] == codes[high]) {
+    std::fill(codes.begin() + static_cast<std::ptrdiff_t>(low),
+              codes.begin() + static_cast<std::ptrdiff_t>(high), codes[low]);
+  } else if (high - low > 1) {
+    const std::size_t middle = (low + high) / 2;
+    codes[middle] = linear_to_srgb8(half_to_float(static_cast<std::uint16_t>(middle)));
+    fill_codes(codes, low, middle);
+    fill_codes(codes, middle, high);
+  }
+}
+
+}  // namespace
+
+const std::array<std::uint8_t, 65536>& srgb8_of_halves() {
+  static const auto codes = [] {
+    std::array<std::uint8_t, 65536> filled{};  // negative ones and NaN stay 0
+    filled[kHalfInfinity] = 255;
+    fill_codes(filled, 0, kHalfInfinity);
+    return filled;
+  }();
+  return codes;
+}
+
 Bytes encode_rgb24(const Image& image) {
   Bytes bytes;
   bytes.reserve(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 3);
+  const auto& encoded = srgb8_of_halves();
   for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
-      const glm::vec4 colour = load_texel<Format::rgba16f>(image, x, y);
-      for (int c = 0; c < 3; ++c) bytes.push_back(std::byte{linear_to_srgb8(colour[c])});
+    const auto halves = row<std::uint16_t>(image, y);
+    for (std::size_t i = 0; i < halves.size(); i += 4) {
+      for (std::size_t c = 0; c < 3; ++c) bytes.push_back(std::byte{encoded[halves[i + c]]});
     }
   }
   return bytes;

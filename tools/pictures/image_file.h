@@ -8,6 +8,7 @@
 //   NPY   version 1.0, '<f2', shape (height, width, 4): the image's own bits
 //   RGB24, RGB48LE   raw video, as ffmpeg names it: a PNG's colours, row by row, nothing else
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -18,6 +19,7 @@
 #include <vector>
 
 #include "raster/images/image.h"
+#include "raster/threads/parallel.h"
 
 namespace softfocus {
 
@@ -62,11 +64,12 @@ struct Picture {
 /// darker ones are known to 2^(power - 25), which with the largest power is 3e-5.
 inline constexpr int kMostLightPower = 10;
 
-/// An RGBA16F image as the bytes of a file, the same on every machine.
+/// An RGBA16F image as the bytes of a file, the same on every machine; of what is compressed, its
+/// values are.
 Bytes encode(const Image& image, FileFormat format);
 /// `alpha`, if any, has a number from 0 to 1 for each pixel, by which its colour was multiplied:
-/// the file then has RGBA, with colours that are not.
-Bytes encode_png(const Image& image, std::span<const float> alpha = {});
+/// the file then has RGBA, with colours that are not. `pool`, if any, filters rows.
+Bytes encode_png(const Image& image, std::span<const float> alpha = {}, ThreadPool* pool = nullptr);
 Bytes encode_png_16(const Image& image, std::span<const float> alpha = {});
 /// Whole numbers of 16 bits along the sRGB curve, red, green, blue of each pixel, and alpha if
 /// there is any, by which colours are divided.
@@ -122,5 +125,7 @@ float srgb16_to_linear(std::uint16_t encoded);
 /// For every half's bits the number that encodes it, 0 to 65535: values outside of 0 to 1 are cut,
 /// NaN is 0.
 std::vector<std::uint16_t> srgb16_of_halves();
+/// The same in 8 bits: linear_to_srgb8().
+const std::array<std::uint8_t, 65536>& srgb8_of_halves();
 
 }  // namespace softfocus

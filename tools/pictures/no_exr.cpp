@@ -26,7 +26,10 @@ std::string_view missing_exr() {
 #endif
 }
 
-Bytes encode_exr(const Image&, ExrNumbers, const std::string&, const PictureExtras&) { refuse(); }
+Bytes encode_exr(const Image&, ExrNumbers, const std::string&, const PictureExtras&,
+                 const std::function<std::string()>&) {
+  refuse();
+}
 Bytes encode_depth_exr(std::span<const float>, int, int) { refuse(); }
 void write_exr(const PictureToWrite&, ExrNumbers, const PictureExtras&, const WriteAt&) {
   refuse();

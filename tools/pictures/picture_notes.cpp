@@ -130,13 +130,18 @@ std::optional<PictureNotes> parse_notes(std::string_view text) {
   }
 }
 
-Bytes encode_with_notes(const Image& image, FileFormat format, const PictureNotes& notes,
-                        const PictureExtras& extras) {
+Bytes encode_with_notes(const Image& image, FileFormat format, PictureNotes notes,
+                        const PictureExtras& extras, const std::function<std::uint64_t()>& hash) {
+  const auto text = [&] {
+    if (hash) notes.picture_hash = hash();
+    return json_text(notes_json(notes));
+  };
   if (format == FileFormat::exr || format == FileFormat::exr_float) {
     PictureExtras all = extras;
     if (!all.lens && notes.lens) all.lens = notes.lens->lens;
     return encode_exr(image, format == FileFormat::exr ? ExrNumbers::half : ExrNumbers::single,
-                      json_text(notes_json(notes)), all);
+                      json_text(notes_json(notes)), all,
+                      hash ? text : std::function<std::string()>{});
   }
   if (extras.light_power > 0) {
     const float light = std::ldexp(1.0f, extras.light_power);
@@ -144,15 +149,14 @@ Bytes encode_with_notes(const Image& image, FileFormat format, const PictureNote
     if (format == FileFormat::hdr) return encode_hdr(image, light);
     PictureExtras lit = extras;
     lit.light_power = 0;
-    return encode_with_notes(brightened(image, light), format, notes, lit);
+    return encode_with_notes(brightened(image, light), format, std::move(notes), lit, hash);
   }
   if (format == FileFormat::tiff) return encode_tiff(image, extras.alpha, extras.icc);
   if (format != FileFormat::png && format != FileFormat::png_16) return encode(image, format);
-  Bytes bytes = format == FileFormat::png ? encode_png(image, extras.alpha)
+  Bytes bytes = format == FileFormat::png ? encode_png(image, extras.alpha, extras.pool)
                                           : encode_png_16(image, extras.alpha);
   if (!extras.icc.empty()) bytes = with_png_profile(bytes, extras.icc);
-  return with_png_texts(bytes, {{"Software", "softfocus " SOFTFOCUS_VERSION},
-                                {kKeyword, json_text(notes_json(notes))}});
+  return with_png_texts(bytes, {{"Software", "softfocus " SOFTFOCUS_VERSION}, {kKeyword, text()}});
 }
 
 bool needs_sidecar(FileFormat format) {

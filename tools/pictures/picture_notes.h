@@ -49,9 +49,11 @@ Json notes_json(const PictureNotes& notes);
 /// The notes in a JSON text, or nullopt if it is not one that notes_json() gave.
 std::optional<PictureNotes> parse_notes(std::string_view text);
 
-/// A picture's file with its notes and the extras in it, as far as the format can.
-Bytes encode_with_notes(const Image& image, FileFormat format, const PictureNotes& notes,
-                        const PictureExtras& extras = {});
+/// A picture's file with its notes and the extras in it, as far as the format can. `hash`, if any,
+/// gives the notes their hash, and is asked when all else is encoded.
+Bytes encode_with_notes(const Image& image, FileFormat format, PictureNotes notes,
+                        const PictureExtras& extras = {},
+                        const std::function<std::uint64_t()>& hash = {});
 
 /// Whether a format keeps its notes in a sidecar.
 bool needs_sidecar(FileFormat format);

@@ -1,6 +1,9 @@
 // PNG through stb: the writer is compiled here, the reader in scenes/.
 
 #include <stb_image.h>
+#ifdef SOFTFOCUS_WITH_LIBDEFLATE
+#include <libdeflate.h>
+#endif
 
 #include <algorithm>
 #include <array>
@@ -12,6 +15,7 @@
 #include <vector>
 
 #include "raster/images/texel.h"
+#include "raster/threads/loops.h"
 #include "tools/cli/errors.h"
 #include "tools/pictures/image_file.h"
 #include "tools/pictures/png_text.h"
@@ -32,6 +36,28 @@ void* allocated(std::size_t size) { return std::malloc(size > 0 ? size : 1); }
 #define STBIW_MALLOC(size) allocated(static_cast<std::size_t>(size))
 #define STBIW_REALLOC(memory, size) grown(memory, size)
 #define STBIW_FREE(memory) std::free(memory)
+
+#ifdef SOFTFOCUS_WITH_LIBDEFLATE
+namespace {
+
+/// In place of stb's compressor: an eighth of its time, files a fifth smaller. One call for the
+/// whole, as libdeflate's pieces do not join. From level 2 on it takes more time than the frame.
+unsigned char* deflated(const unsigned char* data, int size, int* packed_size, int) {
+  constexpr int kLevel = 1;
+  const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor{
+      libdeflate_alloc_compressor(kLevel), libdeflate_free_compressor};
+  if (!compressor) throw std::bad_alloc{};
+  const auto count = static_cast<std::size_t>(size);
+  const std::size_t most = libdeflate_zlib_compress_bound(compressor.get(), count);
+  auto* packed = static_cast<unsigned char*>(grown(nullptr, most));
+  *packed_size =
+      static_cast<int>(libdeflate_zlib_compress(compressor.get(), data, count, packed, most));
+  return packed;
+}
+
+}  // namespace
+#define STBIW_ZLIB_COMPRESS deflated
+#endif
 
 #if defined(__GNUC__)
 #pragma GCC diagnostic push
@@ -59,44 +85,129 @@ float code_of_share(float alpha, float full) {
 
 }  // namespace
 
-Bytes encode_png(const Image& image, std::span<const float> alpha) {
-  const int channels = alpha.empty() ? 3 : 4;
-  std::vector<std::uint8_t> values;
-  values.reserve(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) *
-                 static_cast<std::size_t>(channels));
-  std::size_t pixel = 0;
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x, ++pixel) {
-      const glm::vec4 colour = load_texel<Format::rgba16f>(image, x, y);
-      for (int c = 0; c < 3; ++c) {
-        values.push_back(
-            linear_to_srgb8(alpha.empty() ? colour[c] : divided(colour[c], alpha[pixel])));
-      }
-      if (!alpha.empty()) {
-        values.push_back(static_cast<std::uint8_t>(code_of_share(alpha[pixel], 255.0f)));
-      }
-    }
-  }
+namespace {
+
+/// Compresses. For PNG stb's own quality is 8.
+std::string packed_text(std::vector<std::uint8_t>& plain) {
+  constexpr int kQuality = 8;
   int size = 0;
-  const std::unique_ptr<unsigned char, decltype(&std::free)> png{
-      stbi_write_png_to_mem(values.data(), channels * image.width, image.width, image.height,
-                            channels, &size),
-      std::free};
-  if (!png) throw std::bad_alloc{};
-  const auto* start = reinterpret_cast<const std::byte*>(png.get());
-  return {start, start + size};
+  const std::unique_ptr<unsigned char, decltype(&std::free)> packed{
+      stbi_zlib_compress(plain.data(), static_cast<int>(plain.size()), &size, kQuality), std::free};
+  if (!packed) throw std::bad_alloc{};
+  return {reinterpret_cast<const char*>(packed.get()), static_cast<std::size_t>(size)};
+}
+
+/// A PNG of rows, each behind its filter's number.
+Bytes png_of_rows(std::vector<std::uint8_t>& rows, int width, int height, int bits,
+                  std::size_t channels) {
+  std::string header;
+  for (const int side : {width, height}) {
+    for (int shift = 24; shift >= 0; shift -= 8) header += static_cast<char>(side >> shift & 0xFF);
+  }
+  header += static_cast<char>(bits);
+  header += static_cast<char>(channels == 1 ? 0 : channels == 3 ? 2 : 6);  // grey, RGB or RGBA
+  header += std::string(3, '\0');  // the one compression, filter, no interlace
+  Bytes bytes;
+  for (const char c : kPngSignature) bytes.push_back(static_cast<std::byte>(c));
+  append_png_chunk(bytes, "IHDR", header);
+  append_png_chunk(bytes, "IDAT", packed_text(rows));
+  append_png_chunk(bytes, "IEND", {});
+  return bytes;
+}
+
+void check_png_size(std::size_t bytes) {
+  if (bytes > 0x7FFFFFFF) throw FileError("a PNG can have 2 GB of values at most; write an EXR");
+}
+
+constexpr std::size_t kWords = 8;  // of 16 bytes, which every CPU has
+using Words [[gnu::vector_size(2 * kWords)]] = std::int16_t;
+using WordBytes [[gnu::vector_size(kWords)]] = std::uint8_t;
+
+Words load_words(const std::uint8_t* from) {
+  WordBytes bytes;
+  std::memcpy(&bytes, from, sizeof bytes);
+  return __builtin_convertvector(bytes, Words);
+}
+
+/// PNG's filter 4: differences from the value on the left, above or above on the left that is
+/// nearest to left + above - that. Reads, and writes, up to a whole vector; needs `channels` values
+/// before the rows.
+void filter_by_paeth(const std::uint8_t* row, const std::uint8_t* above, std::size_t count,
+                     std::size_t channels, std::uint8_t* to) {
+  for (std::size_t i = 0; i < count; i += kWords) {
+    const Words a = load_words(row + i - channels);
+    const Words b = load_words(above + i);
+    const Words c = load_words(above + i - channels);
+    const auto magnitude = [](Words v) { return v < 0 ? -v : v; };
+    const Words to_a = magnitude(b - c), to_b = magnitude(a - c), to_c = magnitude(a + b - 2 * c);
+    const Words nearest = (to_a <= to_b) & (to_a <= to_c) ? a : to_b <= to_c ? b : c;
+    const WordBytes difference = __builtin_convertvector(load_words(row + i) - nearest, WordBytes);
+    std::memcpy(to + i, &difference, sizeof difference);
+  }
+}
+
+/// A row of 8-bit values.
+void encode_row(const Image& image, int y, std::span<const float> alpha, std::uint8_t* to) {
+  const auto& encoded = srgb8_of_halves();
+  const auto halves = row<std::uint16_t>(image, y);
+  if (alpha.empty()) {
+    for (std::size_t i = 0; i < halves.size(); i += 4) {
+      for (std::size_t c = 0; c < 3; ++c) *to++ = encoded[halves[i + c]];
+    }
+    return;
+  }
+  const float* share = &alpha[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width)];
+  for (std::size_t i = 0; i < halves.size(); i += 4, ++share) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      *to++ = linear_to_srgb8(divided(half_to_float(halves[i + c]), *share));
+    }
+    *to++ = static_cast<std::uint8_t>(code_of_share(*share, 255.0f));
+  }
+}
+
+}  // namespace
+
+Bytes encode_png(const Image& image, std::span<const float> alpha, ThreadPool* pool) {
+  if (pool == nullptr) {
+    ThreadPool here{1};
+    return encode_png(image, alpha, &here);
+  }
+  constexpr std::uint8_t kPaeth = 4;
+  constexpr int kBandRows = 32;
+  const std::size_t channels = alpha.empty() ? 3 : 4;
+  const std::size_t count = static_cast<std::size_t>(image.width) * channels;
+  const auto height = static_cast<std::size_t>(image.height);
+  check_png_size((count + 1) * height);
+  std::vector<std::uint8_t> rows((count + 1) * height);
+  struct Band {
+    std::vector<std::uint8_t> values, above, filtered;
+  };
+  for_each_band_with<Band>(*pool, image.height, kBandRows, [&](int first, int end, Band& band) {
+    band.values.assign(channels + count + kWords, 0);
+    band.above.assign(channels + count + kWords, 0);
+    band.filtered.resize(count + kWords);
+    if (first > 0) encode_row(image, first - 1, alpha, band.above.data() + channels);
+    for (int y = first; y < end; ++y) {
+      encode_row(image, y, alpha, band.values.data() + channels);
+      filter_by_paeth(band.values.data() + channels, band.above.data() + channels, count, channels,
+                      band.filtered.data());
+      std::uint8_t* const to = rows.data() + static_cast<std::size_t>(y) * (count + 1);
+      *to = kPaeth;
+      std::memcpy(to + 1, band.filtered.data(), count);
+      std::swap(band.values, band.above);
+    }
+  });
+  return png_of_rows(rows, image.width, image.height, 8, channels);
 }
 
 namespace {
 
-/// Rows of 16-bit numbers, high bytes first, each behind its filter's number: Sub, the difference
-/// from the pixel on the left.
+/// Rows of 16-bit numbers, high bytes first, filtered by Sub: the difference from the pixel on the
+/// left.
 Bytes png_of_wide_rows(std::span<const std::uint16_t> values, int width, int height,
                        std::size_t channels) {
   const std::size_t row_values = static_cast<std::size_t>(width) * channels;
-  if (values.size() * 2 + static_cast<std::size_t>(height) > 0x7FFFFFFF) {
-    throw FileError("a PNG of 16 bits can have 2 GB of values at most; write an EXR");
-  }
+  check_png_size(values.size() * 2 + static_cast<std::size_t>(height));
   constexpr std::uint8_t kSub = 1;
   std::vector<std::uint8_t> rows;
   rows.reserve(values.size() * 2 + static_cast<std::size_t>(height));
@@ -109,42 +220,18 @@ Bytes png_of_wide_rows(std::span<const std::uint16_t> values, int width, int hei
       rows.push_back(static_cast<std::uint8_t>((value & 0xFF) - (left & 0xFF)));
     }
   }
-  constexpr int kQuality = 8;  // stb's own for PNG
-  int size = 0;
-  const std::unique_ptr<unsigned char, decltype(&std::free)> packed{
-      stbi_zlib_compress(rows.data(), static_cast<int>(rows.size()), &size, kQuality), std::free};
-  if (!packed) throw std::bad_alloc{};
-
-  std::string header;
-  for (const int side : {width, height}) {
-    for (int shift = 24; shift >= 0; shift -= 8) header += static_cast<char>(side >> shift & 0xFF);
-  }
-  header += static_cast<char>(16);                                         // bits
-  header += static_cast<char>(channels == 1 ? 0 : channels == 3 ? 2 : 6);  // grey, RGB or RGBA
-  header += std::string(3, '\0');  // the one compression, filter, no interlace
-  Bytes bytes;
-  for (const char c : kPngSignature) bytes.push_back(static_cast<std::byte>(c));
-  append_png_chunk(bytes, "IHDR", header);
-  append_png_chunk(bytes, "IDAT",
-                   {reinterpret_cast<const char*>(packed.get()), static_cast<std::size_t>(size)});
-  append_png_chunk(bytes, "IEND", {});
-  return bytes;
+  return png_of_rows(rows, width, height, 16, channels);
 }
 
 }  // namespace
 
 Bytes with_png_profile(std::span<const std::byte> png, std::span<const std::byte> icc) {
-  constexpr int kQuality = 8;  // stb's own for PNG
   constexpr std::ptrdiff_t kHeaderEnd = 8 + 25;
   std::vector<std::uint8_t> plain(icc.size());
   std::memcpy(plain.data(), icc.data(), icc.size());
-  int size = 0;
-  const std::unique_ptr<unsigned char, decltype(&std::free)> packed{
-      stbi_zlib_compress(plain.data(), static_cast<int>(plain.size()), &size, kQuality), std::free};
-  if (!packed) throw std::bad_alloc{};
   std::string data = "ICC profile";
   data.append(2, '\0');  // ends the name; the one compression
-  data.append(reinterpret_cast<const char*>(packed.get()), static_cast<std::size_t>(size));
+  data.append(packed_text(plain));
   Bytes bytes{png.begin(), png.begin() + kHeaderEnd};
   append_png_chunk(bytes, "iCCP", data);
   bytes.insert(bytes.end(), png.begin() + kHeaderEnd, png.end());

@@ -1,6 +1,7 @@
 #include "tools/pictures/png_text.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
 
@@ -15,12 +16,21 @@ constexpr std::size_t kFrame = 12;  // of a chunk: length, type, CRC
 constexpr std::size_t kHeaderEnd = 8 + kFrame + 13;
 constexpr std::uint32_t kIhdr = 0x49484452, kIend = 0x49454E44;
 
+constexpr std::array<std::uint32_t, 256> kCrcOfByte = [] {
+  std::array<std::uint32_t, 256> table{};
+  for (std::uint32_t byte = 0; byte < table.size(); ++byte) {
+    std::uint32_t crc = byte;
+    for (int bit = 0; bit < 8; ++bit) crc = (crc & 1u) != 0 ? 0xEDB88320u ^ crc >> 1 : crc >> 1;
+    table[byte] = crc;
+  }
+  return table;
+}();
+
 /// CRC-32 of ISO 3309, as the PNG specification's annex D gives it.
 std::uint32_t crc32(std::span<const std::byte> bytes) {
   std::uint32_t crc = 0xFFFFFFFFu;
   for (const std::byte byte : bytes) {
-    crc ^= std::to_integer<std::uint32_t>(byte);
-    for (int bit = 0; bit < 8; ++bit) crc = (crc & 1u) != 0 ? 0xEDB88320u ^ crc >> 1 : crc >> 1;
+    crc = crc >> 8 ^ kCrcOfByte[(crc ^ std::to_integer<std::uint32_t>(byte)) & 0xFFu];
   }
   return ~crc;
 }

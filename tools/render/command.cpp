@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "raster/threads/background.h"
 #include "scenes/draw/draw_scene.h"
 #include "scenes/draw/light_points.h"
 #include "scenes/draw/shadowed_layers.h"
@@ -197,10 +198,32 @@ struct Rendered {
   std::string report{}, json{};
 };
 
+/// The picture's file, and the record's hash. Each byte of a hash waits for the one before: on a
+/// second thread it costs no time.
+Bytes encoded_beside_hash(const RenderOptions& options, RenderRecord& record, ThreadPool& pool) {
+  const Image& picture = record.frame.picture;
+  const PictureExtras extras{.pool = &pool};
+  if (pool.threads() == 1) {
+    record.picture_hash = hash_image(picture);
+    return encode_with_notes(picture, options.format, notes_of(options, record), extras);
+  }
+  std::uint64_t hash = 0;
+  Background beside;
+  beside.begin([&] { hash = hash_image(picture); });
+  const auto hash_when_there = [&] {
+    beside.wait();
+    return hash;
+  };
+  Bytes bytes = encode_with_notes(picture, options.format, notes_of(options, record), extras,
+                                  hash_when_there);
+  record.picture_hash = hash_when_there();
+  return bytes;
+}
+
 /// Writes what was asked for of the frame. The files get their names together, when nothing can
 /// fail but the naming.
 Rendered write_frame(const RenderOptions& options, RenderRecord& record,
-                     std::vector<std::string> warnings, Progress& progress) {
+                     std::vector<std::string> warnings, Progress& progress, ThreadPool& pool) {
   std::deque<WholeFile> files;
   const auto write = [&](const std::filesystem::path& place, const auto& bytes) {
     files.emplace_back(place).write(bytes);
@@ -214,16 +237,14 @@ Rendered write_frame(const RenderOptions& options, RenderRecord& record,
     sidecar.reset();
   }
   Rendered made;
-  made.picture = timed(progress, "encoding", record.ms.encode, [&] {
-    record.picture_hash = hash_image(picture);
-    return encode_with_notes(picture, options.format, notes_of(options, record));
-  });
+  made.picture = timed(progress, "encoding", record.ms.encode,
+                       [&] { return encoded_beside_hash(options, record, pool); });
   const PictureNotes notes = notes_of(options, record);
   timed(progress, "writing", record.ms.write, [&] {
     if (options.output != "-") write(options.output, made.picture);
     for (std::size_t i = 0; i < record.frame.behind.size(); ++i) {
       write(layer_place(options, i + 2),
-            encode_with_notes(record.frame.behind[i], options.format, notes));
+            encode_with_notes(record.frame.behind[i], options.format, notes, {.pool = &pool}));
     }
     if (sidecar) write(*sidecar, sidecar_text(notes, made.picture));
     if (options.depth_output) write(*options.depth_output, depth_bytes(options, picture));
@@ -262,12 +283,12 @@ Rendered make_rendered(const RenderOptions& options, const Scene& scene, double 
   if (options.show == Show::image) {
     warnings.push_back(shutter_warning(scene, options.method, record.effects));
   }
-  return write_frame(options, record, std::move(warnings), progress);
+  return write_frame(options, record, std::move(warnings), progress, pool);
 }
 
-Scene loaded_scene(const RenderOptions& options, Progress& progress, double& ms) {
+Scene loaded_scene(const RenderOptions& options, Progress& progress, double& ms, ThreadPool& pool) {
   Scene scene = timed(progress, "loading", ms, [&] {
-    return load_scene(options.scene, scene_search_path(options.scene_path));
+    return load_scene(options.scene, scene_search_path(options.scene_path), &pool);
   });
   progress.clear();
   settle_shadows(options, scene);
@@ -291,7 +312,7 @@ int render(const RenderOptions& options) {
   Progress progress{options.quiet};
   ThreadPool pool{options.pool.threads, options.pool.isa};
   double load_ms = 0.0;
-  const Scene scene = loaded_scene(options, progress, load_ms);
+  const Scene scene = loaded_scene(options, progress, load_ms, pool);
   check_outputs(options, scene);
   checked_effect_of_frames(options, scene);
   if (options.shard && !options.effects.are_given && !scene.effects.empty()) {
@@ -314,7 +335,10 @@ int render(const RenderOptions& options) {
 int render_many(const RenderOptions& options, const CLI::App& parser) {
   Progress progress{options.quiet};
   double load_ms = 0.0;
-  const Scene scene = loaded_scene(options, progress, load_ms);
+  const Scene scene = [&] {
+    ThreadPool pool{options.pool.threads, options.pool.isa};
+    return loaded_scene(options, progress, load_ms, pool);
+  }();
   const bool depends = checked_effect_of_frames(options, scene).has_value();
   FrameSequence sequence = frame_sequence(options);
   return render_frames(options, parser, scene, [&](const RenderOptions& frame, FrameRun& run) {

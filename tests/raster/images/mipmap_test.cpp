@@ -60,7 +60,39 @@ double farthest_from_means(const Texture& texture) {
   return worst;
 }
 
+// As the standard says: sums of two, their sum, a quarter of it.
+Image halved(const Image& fine, const Profile& profile) {
+  Image coarse = make_image(fine.format, std::max(1, fine.width / 2), std::max(1, fine.height / 2));
+  for (int y = 0; y < coarse.height; ++y) {
+    for (int x = 0; x < coarse.width; ++x) {
+      const int x1 = std::min(2 * x + 1, fine.width - 1);
+      const int y1 = std::min(2 * y + 1, fine.height - 1);
+      const glm::vec4 sum = (load_texel(fine, 2 * x, 2 * y) + load_texel(fine, x1, 2 * y)) +
+                            (load_texel(fine, 2 * x, y1) + load_texel(fine, x1, y1));
+      store_texel(coarse, x, y, sum * 0.25f, profile);
+    }
+  }
+  return coarse;
+}
+
 }  // namespace
+
+TEST_CASE("each level has the rounded means of the one before, in every format and profile") {
+  for (const Format format :
+       {Format::r8, Format::rgba8, Format::srgb8, Format::rgba16f, Format::rgba32f}) {
+    for (const auto& [width, height] : {std::pair{16, 16}, {13, 7}, {1, 6}, {5, 1}}) {
+      for (const NamedProfile& known : profiles()) {
+        CAPTURE(known.name);
+        CAPTURE(width);
+        Texture texture = random_texture(format, width, height, 3);
+        generate_mipmaps(texture, known.profile);
+        for (std::size_t level = 1; level < texture.levels.size(); ++level) {
+          CHECK(equal(texture.levels[level], halved(texture.levels[level - 1], known.profile)));
+        }
+      }
+    }
+  }
+}
 
 TEST_CASE("mip levels halve each side, rounded down, until both are 1") {
   struct Chain {

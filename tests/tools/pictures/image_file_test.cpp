@@ -7,6 +7,7 @@
 #include <string>
 
 #include "raster/images/texel.h"
+#include "tests/support/raster_helpers.h"
 #include "tests/support/run_program.h"
 #include "tools/cli/errors.h"
 
@@ -165,6 +166,37 @@ TEST_CASE("all 256 values of a PNG stay apart as halves and come back as themsel
   CHECK(encode_png(once.image) == png);
   for (int x = 1; x < 256; ++x) {
     CHECK(load_texel(once.image, x - 1, 0).x < load_texel(once.image, x, 0).x);
+  }
+}
+
+TEST_CASE("a PNG is filtered alike on any number of threads, at any width") {
+  test::Random random{5};
+  for (const int width : {1, 5, 16, 67}) {
+    CAPTURE(width);
+    Image image = make_image(Format::rgba16f, width, 70);
+    for (int y = 0; y < image.height; ++y) {
+      for (std::uint16_t& value : row<std::uint16_t>(image, y)) {
+        value = float_to_half(random.between(-0.2f, 1.2f), HalfRounding::nearest_even);
+      }
+    }
+    ThreadPool pool{3};
+    const Bytes png = encode_png(image, {}, &pool);
+    CHECK(png == encode_png(image));
+    const Picture read = decode_png(png);
+    for (int y = 0; y < image.height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        const glm::vec4 texel = load_texel<Format::rgba16f>(image, x, y);
+        const glm::vec4 back = load_texel<Format::rgba16f>(read.image, x, y);
+        for (int c = 0; c < 3; ++c) CHECK(linear_to_srgb8(back[c]) == linear_to_srgb8(texel[c]));
+      }
+    }
+  }
+}
+
+TEST_CASE("every half has the 8-bit code of its value") {
+  for (std::uint32_t bits = 0; bits < 65536; ++bits) {
+    const auto half = static_cast<std::uint16_t>(bits);
+    CHECK(srgb8_of_halves()[bits] == linear_to_srgb8(half_to_float(half)));
   }
 }
 
