@@ -40,8 +40,8 @@ void* allocated(std::size_t size) { return std::malloc(size > 0 ? size : 1); }
 #ifdef SOFTFOCUS_WITH_LIBDEFLATE
 namespace {
 
-/// In place of stb's compressor: an eighth of its time, files a fifth smaller. One call for the
-/// whole, as libdeflate's pieces do not join. From level 2 on it takes more time than the frame.
+/// In place of stb's compressor: files are a quarter smaller. One call for the whole, as
+/// libdeflate's pieces do not join.
 unsigned char* deflated(const unsigned char* data, int size, int* packed_size, int) {
   constexpr int kLevel = 1;
   const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor{
