@@ -34,6 +34,7 @@ void decode_halves(Isa isa, const std::uint16_t* from, std::size_t count, float*
 #else  // once a vector unit
 
 #include "raster/images/sample_lanes.inl"
+#include "raster/lanes/vector_math_lanes.inl"
 
 #include "raster/images/filter_lanes.inl"
 #include "raster/images/sample_taps.inl"

@@ -1,5 +1,5 @@
 // What sliced_texture.cpp computes of places and levels, in lanes, to the bit. Included after
-// raster/images/sample_lanes.inl.
+// raster/images/sample_lanes.inl and raster/lanes/vector_math_lanes.inl.
 
 /// The main axis of directions: at most one of both masks is set, and z's is else.
 struct MainAxisLanes {
@@ -50,10 +50,6 @@ SOFTFOCUS_INLINE Ints nearest_layer(int count, Floats at) {
     return truncate(nearest(select(at > 0.0f, smaller(at, last), splat(0.0f))));
   }
 }
-
-struct Vec3Lanes {
-  Floats x, y, z;
-};
 
 /// The squared length of a volume's difference, in texels.
 SOFTFOCUS_INLINE Floats volume_square(const DecodedTexture& texture, const Vec3Lanes& change) {

@@ -184,6 +184,8 @@ void store_lanes(Isa isa, const float* const* channels, const std::int32_t* kill
 #else  // kernels
 
 #include "raster/images/sample_lanes.inl"
+#include "raster/lanes/vector_math_lanes.inl"
+
 #include "raster/images/sliced_lanes.inl"
 #include "raster/shaders/math_lanes.inl"
 #include "raster/shaders/operation_lanes.inl"

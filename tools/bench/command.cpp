@@ -207,12 +207,15 @@ BenchRecord bench_arithmetic(const BenchOptions& options, const BenchWork& work,
           BenchPeer{"float", "the same filter in binary32", !bytes && equal(ours, theirs)}};
 }
 
-/// The whole command that makes the frame, from a process's start to a PNG; with the scene's own
-/// lens. Nothing where the program cannot run itself.
+/// The whole command that makes the frame, from a process's start to a PNG, with the scene's own
+/// lens. Nothing of methods that are no filter, or where the program cannot run itself.
 std::optional<StageSamples> time_command(const BenchOptions& options,
                                          const std::function<void(int run)>& on_run) {
   const auto program = own_program();
-  if (options.scene.empty() || !program || program->stem() != "softfocus") return std::nullopt;
+  if (options.scene.empty() || options.method.filter == nullptr || !program ||
+      program->stem() != "softfocus") {
+    return std::nullopt;
+  }
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() /
       ("softfocus-bench-" + std::to_string(process_number()) + ".png");
@@ -224,6 +227,9 @@ std::optional<StageSamples> time_command(const BenchOptions& options,
                                  "--profile", options.profile_name,
                                  "--threads", std::to_string(options.pool.threads),
                                  "--isa",     std::string{isa_name(options.pool.isa)}};
+  if (options.max_coc_px) {
+    words.insert(words.end(), {"--max-coc", short_number(*options.max_coc_px)});
+  }
   for (const auto& directory : options.scene_path) {
     words.insert(words.end(), {"--scene-path", directory.string()});
   }

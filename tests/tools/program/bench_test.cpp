@@ -112,6 +112,7 @@ TEST_CASE("bench: without --vs there is no peer, no ratio and nothing to be equa
     CAPTURE(key);
     CHECK(result.at(key).is_null());
   }
+  check_stages(result["stages"], {"raster", "dof", "frame", "command"});
 }
 
 TEST_CASE("bench: a scene is measured at its own filter size, or as --max-coc says") {
