@@ -267,6 +267,7 @@ std::span<const FrameSize> golden_sizes(GoldenSet set) {
 
 std::vector<GoldenScene> load_golden_scenes(ThreadPool& pool) {
   std::vector<GoldenScene> scenes;
+  scenes.reserve(kScenes.size());
   for (const std::string_view name : kScenes) {
     scenes.push_back({std::string{name}, load_scene(name, scene_search_path({}), &pool)});
   }

@@ -197,14 +197,14 @@ TEST_CASE(
            "  c = vec4(" +
            value + ");\n}\n";
   };
-  for (const auto& [value, is] :
+  for (const auto& one :
        {std::pair{"all.length(), v.z, on && n > 4 ? 7 : 8, n == 5 ? 1 : 2",
                   glm::vec4{3.0f, 0.0f, 7.0f, 1.0f}},
         std::pair{"u >> 28, u / 16u > 3u ? 1 : 0, -n, ~n", glm::vec4{15.0f, 1.0f, -5.0f, -6.0f}}}) {
-    CAPTURE(value);
-    const UserShader shader = shader_of("mine.frag", text(value));
+    CAPTURE(one.first);
+    const UserShader shader = shader_of("mine.frag", text(one.first));
     const Image image = drawn_by(shader, shader.uniforms.words, noise());
-    CHECK(load_texel(image, 0, 0) == is);
+    CHECK(load_texel(image, 0, 0) == one.second);
   }
 }
 
