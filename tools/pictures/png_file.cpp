@@ -140,7 +140,7 @@ void filter_by_paeth(const std::uint8_t* row, const std::uint8_t* above, std::si
     const Words c = load_words(above + i - channels);
     const auto magnitude = [](Words v) { return v < 0 ? -v : v; };
     const Words to_a = magnitude(b - c), to_b = magnitude(a - c), to_c = magnitude(a + b - 2 * c);
-    const Words nearest = (to_a <= to_b) & (to_a <= to_c) ? a : to_b <= to_c ? b : c;
+    const Words nearest = ((to_a <= to_b) & (to_a <= to_c)) ? a : to_b <= to_c ? b : c;
     const WordBytes difference = __builtin_convertvector(load_words(row + i) - nearest, WordBytes);
     std::memcpy(to + i, &difference, sizeof difference);
   }
@@ -173,7 +173,7 @@ Bytes encode_png(const Image& image, std::span<const float> alpha, ThreadPool* p
     return encode_png(image, alpha, &here);
   }
   constexpr std::uint8_t kPaeth = 4;
-  constexpr int kBandRows = 32;
+  constexpr int kFilteredRows = 32;
   const std::size_t channels = alpha.empty() ? 3 : 4;
   const std::size_t count = static_cast<std::size_t>(image.width) * channels;
   const auto height = static_cast<std::size_t>(image.height);
@@ -182,7 +182,7 @@ Bytes encode_png(const Image& image, std::span<const float> alpha, ThreadPool* p
   struct Band {
     std::vector<std::uint8_t> values, above, filtered;
   };
-  for_each_band_with<Band>(*pool, image.height, kBandRows, [&](int first, int end, Band& band) {
+  for_each_band_with<Band>(*pool, image.height, kFilteredRows, [&](int first, int end, Band& band) {
     band.values.assign(channels + count + kWords, 0);
     band.above.assign(channels + count + kWords, 0);
     band.filtered.resize(count + kWords);
