@@ -361,6 +361,7 @@ void settle_states(std::vector<Piece>& pieces, ObjText& obj) {
 
 template <class Value>
 void put(const std::vector<Value>& from, std::vector<Value>& to, std::size_t first) {
+  if (from.empty()) return;  // `to` may be, too
   std::copy(from.begin(), from.end(), to.begin() + static_cast<std::ptrdiff_t>(first));
 }
 
