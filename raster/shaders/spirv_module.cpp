@@ -153,6 +153,7 @@ class Reader {
     damaged_words("a text has no end");
   }
 
+  /// One that is defined before: asked for before add_type(), or a type could consist of itself.
   SpirvId known_type(Operands operands, std::size_t at) const {
     const SpirvId id = word(operands, at);
     if (!module_.types.contains(id)) damaged_words("a type is used that is not there");
@@ -248,8 +249,9 @@ class Reader {
         return true;
       }
       case type_image: {
+        const SpirvId element = known_type(w, 0);
         SpirvType& type = add_type(in, image, 1);
-        type.element = known_type(w, 0);
+        type.element = element;
         type.dim = static_cast<SpirvDim>(word(w, 1));
         type.is_shadow = word(w, 2) == 1;
         type.is_arrayed = word(w, 3) != 0;
@@ -292,8 +294,9 @@ class Reader {
       }
       case type_pointer: {
         const std::uint32_t storage = word(w, 0);
+        const SpirvId element = known_type(w, 1);
         SpirvType& type = add_type(in, pointer, 0);
-        type.element = known_type(w, 1);
+        type.element = element;
         type.storage = static_cast<SpirvStorage>(storage);
         if (storage == 12 || storage == 4 || storage == 5 || storage == 8 || storage == 10 ||
             storage > 12) {
@@ -302,9 +305,12 @@ class Reader {
         return true;
       }
       case type_function: {
+        const SpirvId element = known_type(w, 0);
+        std::vector<SpirvId> parameters;
+        for (std::size_t i = 1; i < w.size(); ++i) parameters.push_back(known_type(w, i));
         SpirvType& type = add_type(in, SpirvKind::function, 0);
-        type.element = known_type(w, 0);
-        for (std::size_t i = 1; i < w.size(); ++i) type.members.push_back(known_type(w, i));
+        type.element = element;
+        type.members = std::move(parameters);
         return true;
       }
       default: return false;

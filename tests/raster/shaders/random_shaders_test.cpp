@@ -62,6 +62,20 @@ TEST_CASE("random shaders have a pixel's bits on every unit, at every width, sim
   }
 }
 
+TEST_CASE("a type that consists of itself is refused") {
+  constexpr std::uint32_t kHead[] = {0x07230203, 0x00010000, 0, 9, 0};
+  const auto words = [&](std::vector<std::uint32_t> type) {
+    type.insert(type.begin(), std::begin(kHead), std::end(kHead));
+    return type;
+  };
+  for (const auto& type : {std::vector<std::uint32_t>{4u << 16 | 32, 5, 1, 5},  // a pointer
+                           std::vector<std::uint32_t>{3u << 16 | 33, 5, 5},     // a function
+                           std::vector<std::uint32_t>{9u << 16 | 25, 5, 5, 1, 0, 0, 0, 1, 0}}) {
+    CHECK_THROWS_WITH_AS(read_spirv(words(type)),
+                         "the SPIR-V is damaged: a type is used that is not there", ShaderError);
+  }
+}
+
 TEST_CASE("damaged SPIR-V is refused in words, or runs and ends") {
   test::Random random{5};
   int ran = 0;
