@@ -49,6 +49,16 @@ void main() {
   fourth = sin(at.xy) + absent.xy;
 })";
 
+/// What link_shaders() complains of; "" if of nothing.
+std::string link_error(UserShader& vertex, UserShader& fragment) {
+  try {
+    link_shaders(vertex, fragment);
+  } catch (const ShaderError& caught) {
+    return caught.what();
+  }
+  return "";
+}
+
 }  // namespace
 
 TEST_CASE("a vertex shader over lanes gives the bits of the interpreter of one vertex") {
@@ -231,12 +241,7 @@ TEST_CASE(
         head + of.fragment + (is_old ? "\n" : "\nout mediump vec4 result;\n") + "void main() { " +
             (is_old ? "gl_FragColor" : "result") + " = vec4(" + of.fragment_use + "); }\n",
         ShaderStage::fragment);
-    try {
-      link_shaders(vertex, fragment);
-    } catch (const ShaderError& caught) {
-      return std::string{caught.what()};
-    }
-    return std::string{};
+    return link_error(vertex, fragment);
   };
   const auto other = [](const std::string& what) {
     return "'v' has another " + what +
@@ -280,12 +285,7 @@ void main() { gl_Position = vec4(position, 1.0); uv = position.xy; })";
     UserShader fragment = shader_of(
         "#version 150\n" + input + "\nout vec4 result;\nvoid main() { result = " + use + "; }\n",
         ShaderStage::fragment);
-    try {
-      link_shaders(vertex, fragment);
-    } catch (const ShaderError& caught) {
-      return std::string{caught.what()};
-    }
-    return std::string{};
+    return link_error(vertex, fragment);
   };
   CHECK(error("in vec4 tint;", "tint") ==
         "the vertex shader has no output 'tint', which the fragment shader reads; it has 'uv'");
@@ -301,12 +301,7 @@ void main() { gl_Position = vec4(position, 1.0); uv = position.xy; })";
     UserShader after =
         shader_of("#version 120\nvarying vec4 v;\nvoid main() { gl_FragColor = v; }\n",
                   ShaderStage::fragment);
-    try {
-      link_shaders(before, after);
-    } catch (const ShaderError& caught) {
-      return std::string{caught.what()};
-    }
-    return std::string{};
+    return link_error(before, after);
   };
   CHECK(old_error("gl_Position.x = 1.0; v = gl_Vertex;").empty());
   CHECK(old_error("gl_FrontColor = v = gl_Vertex;") ==
