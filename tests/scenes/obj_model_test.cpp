@@ -57,16 +57,18 @@ TEST_CASE("numbers are the floats nearest to their decimals") {
 namespace {
 
 // A long text that is read in pieces: 60000 triangles of their own corners, counted back, of one
-// material and smoothing group in a thousand.
+// material and smoothing group in a thousand; the later half is coloured.
 constexpr std::size_t kLongFaces = 60000;
 
 std::string long_text() {
   std::string text = "mtllib a.mtl\n";
   for (std::size_t i = 0; i < kLongFaces; ++i) {
     const std::string number = std::to_string(i);
-    text += "v " + number + " 0 0\nv " + number + " 1 0 # the second\nv " + number + " 0 1\n";
+    text += "v " + number + " 0 0\nv " + number + " 1 0 # the second\nv " + number + " 0 1";
+    text += i < kLongFaces / 2 ? "\n" : " 0.25 0.5 0\n";
+    text += "vt " + number + " 0\nvn 0 0 " + number + "1\n";
     if (i % 1000 == 500) text += "usemtl m" + number + "\ns " + number + "\n";
-    text += i % 7 == 0 ? "f -3 -2 \\\n -1\n" : "f -3 -2 -1\n";
+    text += i % 7 == 0 ? "f -3/-1/-1 -2 \\\n -1\n" : "f -3/-1/-1 -2 -1\n";
   }
   return text;
 }
@@ -80,6 +82,9 @@ TEST_CASE("a long text has the same numbers, materials and groups in pieces") {
   const ObjText obj = parse_obj_text(text, "a.obj", {}, &pool);
   REQUIRE(obj.faces.size() == kLongFaces);
   REQUIRE(obj.positions.size() == 3 * kLongFaces);
+  REQUIRE(obj.colours.size() == obj.positions.size());
+  REQUIRE(obj.uvs.size() == kLongFaces);
+  REQUIRE(obj.normals.size() == kLongFaces);
   REQUIRE(obj.material_names.size() == kLongFaces / 1000);
   std::size_t wrong = 0;
   for (std::size_t i = 0; i < kLongFaces; ++i) {
@@ -91,6 +96,12 @@ TEST_CASE("a long text has the same numbers, materials and groups in pieces") {
     for (std::size_t k = 0; k < 3; ++k) {
       wrong += obj.corners[3 * i + k].position != static_cast<std::int32_t>(3 * i + k);
     }
+    wrong += obj.corners[3 * i].uv != static_cast<std::int32_t>(i) ||
+             obj.corners[3 * i].normal != static_cast<std::int32_t>(i);
+    wrong +=
+        obj.uvs[i].x != static_cast<float>(i) || obj.normals[i].z != static_cast<float>(10 * i + 1);
+    const glm::vec3 colour = i < kLongFaces / 2 ? glm::vec3{1.0f} : glm::vec3{0.25f, 0.5f, 0.0f};
+    wrong += obj.colours[3 * i] != glm::vec3{1.0f} || obj.colours[3 * i + 2] != colour;
     wrong += obj.positions[3 * i + 1] != glm::vec3{static_cast<float>(i), 1.0f, 0.0f};
   }
   CHECK(wrong == 0);
