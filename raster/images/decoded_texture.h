@@ -47,7 +47,8 @@ struct DecodedTexture {
   /// beyond an edge or a corner (sliced_texture.h).
   alignas(64) std::array<std::int32_t, kMaxDecodedLevels> starts{};
   /// Red, green, blue and alpha of each texel, from fetch_texel() or as `are_whole` says. Empty
-  /// if only sample() will do: for softpipe, more than kMaxDecodedLevels levels, or 2^31 floats.
+  /// if only sample() will do: for softpipe's flat textures and arrays, more than
+  /// kMaxDecodedLevels levels, or 2^31 floats.
   std::vector<float, DecodedAllocator> texels;
 };
 

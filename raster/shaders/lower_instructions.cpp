@@ -331,9 +331,13 @@ bool has_one_operand(SpirvOp op) {
 
 }  // namespace
 
-std::optional<std::uint32_t> fold_spirv_op(SpirvOp op, std::uint32_t a, std::uint32_t b) {
+std::optional<std::uint32_t> fold_spirv_op(SpirvOp op, std::span<const std::uint32_t> operands) {
   const std::optional<Mapped> one = mapped(op);
-  if (!one || one->op < ShaderOp::add_integers || op >= SpirvOp::derivative_x) return std::nullopt;
+  if (!one || one->op < ShaderOp::add_integers || op >= SpirvOp::derivative_x ||
+      operands.size() != (has_one_operand(op) ? 1 : 2)) {
+    return std::nullopt;
+  }
+  std::uint32_t a = operands.front(), b = operands.back();
   if (one->swaps) std::swap(a, b);
   const std::uint32_t made = fold_shader_op(one->op, a, b, 0);
   return one->turns ? ~made : made;

@@ -22,9 +22,9 @@ inline constexpr std::size_t kMostNodes = std::size_t{1} << 20;
 inline constexpr std::size_t kMostWork = std::size_t{1} << 22;
 inline constexpr int kDeepestNodes = 200, kDeepestCalls = 64;
 
-/// What an instruction makes of whole numbers or booleans; nothing of others. `b`: of those that
-/// have two operands.
-std::optional<std::uint32_t> fold_spirv_op(SpirvOp op, std::uint32_t a, std::uint32_t b);
+/// What an instruction makes of one or two whole numbers or booleans; nothing of others, or if it
+/// takes another number of them.
+std::optional<std::uint32_t> fold_spirv_op(SpirvOp op, std::span<const std::uint32_t> operands);
 
 inline bool is_uniform(SpirvStorage storage) {
   return storage == SpirvStorage::uniform_constant || storage == SpirvStorage::uniform ||

@@ -356,36 +356,40 @@ class Reader {
     return true;
   }
 
-  /// Of whole numbers and booleans: shaders have no others.
+  /// Of whole numbers and booleans, and which of two numbers of 32 bits: shaders have no others.
   std::vector<std::uint32_t> computed_constant(const SpirvInstruction& in) const {
     const Operands& w = in.operands;
     const auto op = static_cast<SpirvOp>(word(w, 0));
-    const SpirvConstant& a = constant_of(word(w, 1));
-    std::vector<std::uint32_t> words;
+    const std::uint32_t scalars = scalars_of(in.type);
     if (op == composite_extract) {
-      const std::uint32_t scalars = scalars_of(in.type);
+      const SpirvConstant& whole = constant_of(word(w, 1));
       const std::uint64_t first = std::uint64_t{scalars} * word(w, 2);
-      if (w.size() != 3 || module_.type(a.type).element != in.type ||
-          first + scalars > a.words.size()) {
+      if (w.size() != 3 || module_.type(whole.type).element != in.type ||
+          first + scalars > whole.words.size()) {
         refuse("constants that are parts of specialised ones are not supported");
       }
-      const auto at = a.words.begin() + static_cast<std::ptrdiff_t>(first);
+      const auto at = whole.words.begin() + static_cast<std::ptrdiff_t>(first);
       return {at, at + scalars};
     }
-    const std::size_t last = op == select ? 3 : 2;
-    const auto at = [&](std::size_t operand, std::size_t i) {
-      if (operand >= w.size()) return 0u;
-      const std::vector<std::uint32_t>& given = constant_of(w[operand]).words;
-      return given.size() == 1 ? given[0] : i < given.size() ? given[i] : 0u;
-    };
-    for (std::size_t i = 0; i < scalars_of(in.type); ++i) {
-      const auto made = op == select ? std::optional{at(1, i) != 0 ? at(2, i) : at(last, i)}
-                                     : fold_spirv_op(op, at(1, i), at(last, i));
-      if (!made) {
-        refuse("constants that instruction " + std::to_string(word(w, 0)) +
-               " computes of specialised ones are not supported");
+    const SpirvType& type = module_.type(in.type);
+    const SpirvType& number = type.element == 0 ? type : module_.type(type.element);
+    std::vector<std::uint32_t> words;
+    for (std::uint32_t i = 0; i < scalars && number.scalars == 1; ++i) {
+      std::vector<std::uint32_t> of;
+      for (const SpirvId operand : w.subspan(1)) {
+        const std::vector<std::uint32_t>& given = constant_of(operand).words;
+        if (given.size() != 1 && given.size() != scalars) {
+          damaged_words("a constant is computed of another size");
+        }
+        of.push_back(given[given.size() == 1 ? 0 : i]);
       }
-      words.push_back(*made);
+      const bool chooses = op == select && of.size() == 3;
+      const auto made = chooses ? std::optional{of[0] != 0 ? of[1] : of[2]} : fold_spirv_op(op, of);
+      if (made) words.push_back(*made);
+    }
+    if (words.size() != scalars) {
+      refuse("constants that instruction " + std::to_string(word(w, 0)) +
+             " computes of specialised ones are not supported");
     }
     return words;
   }

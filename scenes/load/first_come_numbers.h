@@ -53,8 +53,8 @@ class FirstComeNumbers {
   }
 
   std::vector<Key> keys_;  // by number
-  // Numbers from 1; 0 is free. A power of two of slots, half of them free or more. A key that is
-  // taken lies in the next.
+  // Numbers from 1; 0 is free. A power of two of slots, half of them free or more. A key whose
+  // slot is taken lies in the next free one.
   std::vector<std::uint32_t> slots_ = std::vector<std::uint32_t>(16);
 };
 

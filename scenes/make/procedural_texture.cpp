@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <string_view>
 #include <utility>
 
 #include "raster/numbers/random_bits.h"
@@ -524,16 +525,23 @@ void clouds_row(PatternRow& row, double v) {
   SOFTFOCUS_KERNEL(row.isa, step_row)(cover.data(), 0.25, 0.75, row.share.size(), row.share.data());
 }
 
-// In the order of kPatterns.
-constexpr void (*kPatternRows[])(PatternRow& row, double v) = {
-    checker_row, stripes_row, dots_row, bricks_row, tiles_row, planks_row, marble_row, clouds_row,
-};
-static_assert(std::size(kPatternRows) == std::size(kPatterns));
+using FillRow = void (*)(PatternRow& row, double v);
 
-void paint_rows_in_lanes(const ProceduralTexture& wanted, int first, int end, Isa isa,
-                         Image& image) {
+// Of a pattern; nullptr if it has colour_at() alone.
+FillRow fill_of(const TexturePattern& pattern) {
+  constexpr std::pair<std::string_view, FillRow> kRows[] = {
+      {"checker", checker_row}, {"stripes", stripes_row}, {"dots", dots_row},
+      {"bricks", bricks_row},   {"tiles", tiles_row},     {"planks", planks_row},
+      {"marble", marble_row},   {"clouds", clouds_row},
+  };
+  const auto found = std::find_if(std::begin(kRows), std::end(kRows),
+                                  [&](const auto& row) { return row.first == pattern.name; });
+  return found != std::end(kRows) ? found->second : nullptr;
+}
+
+void paint_rows_in_lanes(const ProceduralTexture& wanted, FillRow fill_row, int first, int end,
+                         Isa isa, Image& image) {
   const int size = wanted.recipe.size;
-  const auto fill_row = kPatternRows[wanted.pattern - std::begin(kPatterns)];
   PatternRow row{wanted.recipe, isa};
   const std::size_t stride = row.points.stride;
   std::vector<double> sums(3 * stride);
@@ -581,11 +589,13 @@ std::vector<Texture> make_procedural_textures(std::span<const ProceduralTexture>
   }
   pool->for_each(static_cast<int>(bands.size()), [&](int i) {
     const Band& band = bands[static_cast<std::size_t>(i)];
-    if (pool->isa() == Isa::scalar) {
-      paint_rows(wanted[band.texture], band.first, band.end, images[band.texture]);
+    const ProceduralTexture& texture = wanted[band.texture];
+    Image& image = images[band.texture];
+    if (const FillRow fill_row = fill_of(*texture.pattern);
+        fill_row == nullptr || pool->isa() == Isa::scalar) {
+      paint_rows(texture, band.first, band.end, image);
     } else {
-      paint_rows_in_lanes(wanted[band.texture], band.first, band.end, pool->isa(),
-                          images[band.texture]);
+      paint_rows_in_lanes(texture, fill_row, band.first, band.end, pool->isa(), image);
     }
   });
   std::vector<Texture> textures(wanted.size());

@@ -108,6 +108,21 @@ TEST_CASE("a long text has the same numbers, materials and groups in pieces") {
   CHECK(obj.libraries == std::vector<std::string>{"a.mtl"});
 }
 
+TEST_CASE("a line that goes on behind a backslash is in one piece") {
+  constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
+  for (const std::string end : {"\n", "\r\n"}) {
+    const std::string begin = "v 0 0 0\nv 1 0 0\nv 0 1 0\n#", face = "\nf 1 2 \\";
+    for (std::size_t shift = 0; shift < face.size() + 4; ++shift) {
+      const std::string comment(kPieceBytes - begin.size() - shift, 'x');
+      ThreadPool pool{2};
+      const ObjText obj =
+          parse_obj_text(begin + comment + face + end + " 3" + end, "a.obj", {}, &pool);
+      CAPTURE(shift);
+      CHECK(obj.corners.size() == 3);
+    }
+  }
+}
+
 TEST_CASE("the first error of a long text is told, with its line") {
   std::string text = long_text();
   const auto line_of = [&](std::size_t place) {
@@ -118,6 +133,8 @@ TEST_CASE("the first error of a long text is told, with its line") {
     text.replace(place, 3, "v x");
     CHECK(complaint(text).starts_with("a.obj:" + std::to_string(line_of(place)) + ": \"x"));
   }
+  text = long_text() + "f 1 2 999999999\n";
+  CHECK(complaint(text).starts_with("a.obj:" + std::to_string(line_of(text.size() - 1)) + ": "));
 }
 
 TEST_CASE("corners may have texture coordinates and normals, or leave them out") {

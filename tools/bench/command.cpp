@@ -207,18 +207,19 @@ BenchRecord bench_arithmetic(const BenchOptions& options, const BenchWork& work,
           BenchPeer{"float", "the same filter in binary32", !bytes && equal(ours, theirs)}};
 }
 
-/// The whole command that makes the frame, from a process's start to a PNG, with the scene's own
-/// lens. Nothing of methods that are no filter, or where the program cannot run itself.
+/// The whole command that makes the frame, from a process's start to a PNG. Nothing of methods that
+/// are no filter, or where the program cannot run itself.
 std::optional<StageSamples> time_command(const BenchOptions& options,
                                          const std::function<void(int run)>& on_run) {
   const auto program = own_program();
+  std::error_code failed;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path(failed);
   if (options.scene.empty() || options.method.filter == nullptr || !program ||
-      program->stem() != "softfocus") {
+      program->stem() != "softfocus" || failed) {
     return std::nullopt;
   }
   const std::filesystem::path file =
-      std::filesystem::temp_directory_path() /
-      ("softfocus-bench-" + std::to_string(process_number()) + ".png");
+      folder / ("softfocus-bench-" + std::to_string(process_number()) + ".png");
   std::vector<std::string> words{"render",    options.scene,
                                  "-o",        file.string(),
                                  "--size",    size_text(options.size),
@@ -230,20 +231,28 @@ std::optional<StageSamples> time_command(const BenchOptions& options,
   if (options.max_coc_px) {
     words.insert(words.end(), {"--max-coc", short_number(*options.max_coc_px)});
   }
+  for (const LensNumber& number : kLensNumbers) {
+    if (const auto value = options.lens.given[number.place]) {
+      words.insert(words.end(), {"--" + std::string{number.parameter.name}, short_number(*value)});
+    }
+  }
+  if (options.lens.coc_scale) {
+    words.insert(words.end(), {"--coc-scale", short_number(*options.lens.coc_scale)});
+  }
   for (const auto& directory : options.scene_path) {
     words.insert(words.end(), {"--scene-path", directory.string()});
   }
   StageSamples samples{"command", {}};
-  for (int run = -1; run < options.runs; ++run) {  // one without a clock
+  bool is_well = true;
+  for (int run = -1; run < options.runs && is_well; ++run) {  // one without a clock
     if (run >= 0) on_run(run);
     const auto start = std::chrono::steady_clock::now();
-    if (run_quietly(*program, words) != 0) return std::nullopt;
+    is_well = run_quietly(*program, words) == 0;
     const std::chrono::duration<double, std::milli> ms = std::chrono::steady_clock::now() - start;
     if (run >= 0) samples.ms.push_back(ms.count());
   }
-  std::error_code ignored;
-  std::filesystem::remove(file, ignored);
-  return samples;
+  std::filesystem::remove(file, failed);
+  return is_well ? std::optional{std::move(samples)} : std::nullopt;
 }
 
 int bench(const BenchOptions& options) {

@@ -16,6 +16,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <mutex>
 #include <vector>
 
 #include "raster/images/texel.h"
@@ -25,6 +26,13 @@
 
 namespace softfocus {
 namespace {
+
+/// OpenEXR has threads of its own, the whole program's, which wait for its next file.
+void want_exr_threads(int count) {
+  static std::mutex mutex;
+  const std::scoped_lock lock{mutex};
+  if (count > Imf::globalThreadCount()) Imf::setGlobalThreadCount(count);
+}
 
 /// Rows that are written at a time: those of the largest block, or fewer, so that a hundred layers
 /// take no more than a few.
@@ -62,9 +70,8 @@ void write_planes(const std::vector<ExrPlane>& planes, const PictureToWrite& pic
   ExrOutput stream{write};
   std::optional<std::uint64_t> notes_place;
   {
-    // OpenEXR has threads of its own, which wait for its next file.
-    const int threads = pool != nullptr ? pool->threads() : 1;
-    if (threads > Imf::globalThreadCount()) Imf::setGlobalThreadCount(threads);
+    const int threads = pool != nullptr && pool->threads() > 1 ? pool->threads() : 0;
+    want_exr_threads(threads);
     Imf::OutputFile exr{stream, header, threads};
     if (picture.notes_after) notes_place = stream.find(picture.notes);
     stream.begin();

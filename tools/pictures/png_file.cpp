@@ -1,4 +1,4 @@
-// PNG through stb: the writer is compiled here, the reader in scenes/.
+// PNG: written here, compressed by libdeflate or stb. stb's reader is compiled in scenes/.
 
 #include <stb_image.h>
 #ifdef SOFTFOCUS_WITH_LIBDEFLATE
@@ -83,10 +83,6 @@ float code_of_share(float alpha, float full) {
   return alpha > 0.0f ? std::min(alpha, 1.0f) * full + 0.5f : 0.0f;
 }
 
-}  // namespace
-
-namespace {
-
 /// Compresses. For PNG stb's own quality is 8.
 std::string packed_text(std::vector<std::uint8_t>& plain) {
   constexpr int kQuality = 8;
@@ -116,7 +112,8 @@ Bytes png_of_rows(std::vector<std::uint8_t>& rows, int width, int height, int bi
 }
 
 void check_png_size(std::size_t bytes) {
-  if (bytes > 0x7FFFFFFF) throw FileError("a PNG can have 2 GB of values at most; write an EXR");
+  // Compressors count in int, and noise grows a little.
+  if (bytes > 0x7F000000) throw FileError("a PNG can have 2 GB of values at most; write an EXR");
 }
 
 constexpr std::size_t kWords = 8;  // of 16 bytes, which every CPU has

@@ -209,8 +209,10 @@ CompiledGlsl compiled(const GlslSource& source, GlslText text, bool is_relaxed) 
     read_spirv(out.words);
   } catch (const ShaderError& error) {
     const std::string why = error.what();
-    const std::size_t line = why.find(':') + 1;  // "FILE:LINE: why"
-    if (line != 0 && std::isdigit(static_cast<unsigned char>(why[line])) != 0) throw;
+    for (std::size_t at = 0; (at = why.find(':', at)) != why.npos;) {  // "FILE:LINE: why"
+      const std::size_t behind = why.find_first_not_of("0123456789", ++at);
+      if (behind != why.npos && behind > at && why[behind] == ':') throw;
+    }
     refuse_at_word(text.text, source.name, why);
   }
   out.convention = text.convention;

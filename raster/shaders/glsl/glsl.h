@@ -75,10 +75,10 @@ struct CompiledGlsl {
 /// What a text may have at the most, with all that it includes.
 inline constexpr std::size_t kMostGlslBytes = std::size_t{1} << 20;
 
-/// A name that ends in .hlsl, or a text with SV_Target or SV_Position, is HLSL's, of a function
-/// main(); it has no text for drivers. Throws ShaderError, "FILE:LINE: ...". Any number of threads
-/// may call it at once. What would take glslang's stack or minutes is refused beforehand
-/// (docs/shaders.md, "Limits").
+/// A name that ends in .hlsl, or a text with SV_Target or SV_Position and no #version, is HLSL's,
+/// of a function main(); it has no text for drivers. Throws ShaderError, "FILE:LINE: ...". Any
+/// number of threads may call it at once. What would take glslang's stack or minutes is refused
+/// beforehand (docs/shaders.md, "Limits").
 CompiledGlsl compile_glsl(const GlslSource& source, const GlslReader& read);
 
 /// Why this build compiles no GLSL; empty if it does.

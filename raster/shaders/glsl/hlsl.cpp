@@ -33,9 +33,11 @@ bool is_hlsl(const GlslSource& source) {
                    [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
     return word.starts_with("SV_TARGET") || word == "SV_POSITION";
   };
+  const auto says_version = [](const GlslToken& sign, const GlslToken& word) {
+    return sign.text == "#" && word.text == "version";
+  };
   return std::any_of(tokens.begin(), tokens.end(), is_semantic) &&
-         std::none_of(tokens.begin(), tokens.end(),
-                      [](const GlslToken& token) { return token.text == "version"; });
+         std::adjacent_find(tokens.begin(), tokens.end(), says_version) == tokens.end();
 }
 
 std::string hlsl_surroundings(std::span<const GlslToken> tokens) {

@@ -58,7 +58,7 @@ struct EmulatedStage {
     std::shared_ptr<const ShaderProgram> program{};
   };
   /// For all uniforms, and for those that are not late. Searched by ==: on big-endian machines
-  /// g++'s < of vectors of words looks at their first bytes alone.
+  /// libstdc++'s < of std::vectors of words compares too few bytes.
   std::vector<Compiled> compiled[2]{};
 };
 

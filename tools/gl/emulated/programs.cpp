@@ -130,9 +130,10 @@ std::vector<std::uint32_t> emulated::spirv_of(ShaderStage stage, const std::stri
           .words;
   if (!gl().spirv.empty()) {
     std::filesystem::create_directories(gl().spirv);
-    std::ofstream{file, std::ios::binary}.write(
-        reinterpret_cast<const char*>(words.data()),
-        static_cast<std::streamsize>(words.size() * sizeof(std::uint32_t)));
+    std::ofstream stream{file, std::ios::binary};
+    stream.write(reinterpret_cast<const char*>(words.data()),
+                 static_cast<std::streamsize>(words.size() * sizeof(std::uint32_t)));
+    if (!stream.flush()) throw ShaderError("cannot write " + file.string());
   }
   return words;
 }
