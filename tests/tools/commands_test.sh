@@ -192,15 +192,15 @@ bare_machine() {
   run tools/test
   cp "$work/asked" "$work/said"
   says 'install .*doctest-dev'
-  run cmake -S . -B build-bare -DCMAKE_DISABLE_FIND_PACKAGE_doctest=ON
+  run cmake -S . -B build-bare -G Ninja -DCMAKE_DISABLE_FIND_PACKAGE_doctest=ON
   says 'doctest-dev.*-DSOFTFOCUS_TESTS=OFF'
   ctest --test-dir build-bare >"$work/said" 2>&1 && fail "no tests, and ctest passes"
-  run cmake -S . -B build-bare -DCMAKE_DISABLE_FIND_PACKAGE_doctest=OFF
+  run cmake -S . -B build-bare -G Ninja -DCMAKE_DISABLE_FIND_PACKAGE_doctest=OFF
   run ctest --test-dir build-bare -N
   says half_test
   # As a build without glslang leaves it, once glslang is there.
   grep -q 'GLSLANG_INCLUDE_DIR.*NOTFOUND' build-bare/CMakeCache.txt && return
-  run cmake -S . -B build-bare -DGLSLANG_WORKS:INTERNAL=
+  run cmake -S . -B build-bare -G Ninja -DGLSLANG_WORKS:INTERNAL=
   grep -q 'GLSLANG_WORKS.*=1' build-bare/CMakeCache.txt || fail "glslang is not looked for again"
 }
 
