@@ -36,7 +36,7 @@ EMSCRIPTEN_WEBGL_CONTEXT_HANDLE make_context() {
 }  // namespace
 
 GlContext::GlContext(const Driver& /*driver*/, std::optional<int> /*threads*/,
-                     const Profile& /*profile*/) {
+                     const Profile& /*profile*/, const std::filesystem::path& /*spirv*/) {
   if (softfocus_make_canvas() == 0) {
     throw DriverError("no WebGL2 here: workers of this browser have no OffscreenCanvas");
   }
