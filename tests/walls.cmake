@@ -15,8 +15,13 @@ set(order
   tools/golden tools/report tools/chart tools/chart/contenders tools/chart/report tools/chart/subject.cpp tools/chart/command.cpp tools/stress/cases tools/stress
   tools/crosscheck tools/boards tools/page tools)
 
-# place_of(PATH VARIABLE): the number of its entry, or -1.
+# place_of(PATH VARIABLE): the number of its entry, or -1. A path is looked up once.
 function(place_of path variable)
+  get_property(known GLOBAL PROPERTY "place of ${path}")
+  if(NOT known STREQUAL "")
+    set(${variable} ${known} PARENT_SCOPE)
+    return()
+  endif()
   set(best -1)
   set(best_length 0)
   set(place 0)
@@ -29,6 +34,7 @@ function(place_of path variable)
     endif()
     math(EXPR place "${place} + 1")
   endforeach()
+  set_property(GLOBAL PROPERTY "place of ${path}" ${best})
   set(${variable} ${best} PARENT_SCOPE)
 endfunction()
 

@@ -29,7 +29,7 @@ constexpr int kIncomplete = 2;
 struct CrosscheckOptions {
   std::vector<const Driver*> drivers;
   std::optional<ChosenProfile> profile;
-  std::string cases = "*";
+  std::vector<std::string> cases;
   std::string pipeline;
   std::filesystem::path pictures;
   Shaders shaders;
@@ -67,8 +67,9 @@ std::vector<DriverWork> planned_work(const CrosscheckOptions& options) {
   std::vector<DriverWork> work;
   work.reserve(chosen.size());
   for (const Driver* driver : chosen) work.push_back({driver, profile_for(*driver, options), 0});
-  if (matching_cases(options.cases, options.pipeline, false, nullptr) == 0) {
-    throw UsageError("--case '" + options.cases +
+  for (const std::string& pattern : options.cases) {
+    if (matching_cases({pattern}, options.pipeline, false, nullptr) != 0) continue;
+    throw UsageError("--case '" + pattern +
                      "' matches no case; names look like coverage/slivers-20000, and "
                      "--case 'coverage/*' takes a whole stage");
   }
@@ -189,7 +190,7 @@ int crosscheck(const CrosscheckOptions& options) {
     count.planned += work.cases;
     std::string error;
     if (work.cases == 0) {
-      error = "no case of --case '" + options.cases + "' is for this driver" +
+      error = std::string{"no case that --case names is for this driver"} +
               (options.quick ? " and --quick" : "");
     } else {
       if (!options.json) {
@@ -247,8 +248,9 @@ Command add_crosscheck_command(CLI::App& program) {
       });
   add_profile_option(*parser, "Compare with this profile (default: the driver's own)",
                      [options](const ChosenProfile& chosen) { options->profile = chosen; });
-  add_text(*parser, "--case", "GLOB", "Only cases whose STAGE/NAME matches, e.g. 'coverage/*'",
-           options->cases);
+  add_repeatable_value(*parser, "--case", "GLOB",
+                       "Only cases whose STAGE/NAME matches, e.g. 'coverage/*'; may be repeated",
+                       [options](const std::string& text) { options->cases.push_back(text); });
   add_value(*parser, "--pipeline", "FILE",
             "Passes of yours in place of all cases, pass by pass (docs/shaders.md)",
             [options](const std::string& text) {

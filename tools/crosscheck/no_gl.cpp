@@ -20,7 +20,9 @@ namespace {
 DriverRun run_cases(const CrosscheckWork&, const std::function<void(const CaseResult&)>&) {
   refuse();
 }
-int matching_cases(const std::string&, const std::string&, bool, const Driver*) { refuse(); }
+int matching_cases(const std::vector<std::string>&, const std::string&, bool, const Driver*) {
+  refuse();
+}
 
 Probe probe_driver(const Driver&) { refuse(); }
 

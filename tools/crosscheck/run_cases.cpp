@@ -2,6 +2,8 @@
 
 #include <fnmatch.h>
 
+#include <algorithm>
+
 #include "tools/crosscheck/cases.h"
 #include "tools/files/json.h"
 #include "tools/files/whole_file.h"
@@ -11,8 +13,8 @@
 namespace softfocus {
 namespace {
 
-std::vector<Case> chosen_cases(const std::string& pattern, const std::string& pipeline, bool quick,
-                               const Driver* driver) {
+std::vector<Case> chosen_cases(const std::vector<std::string>& patterns,
+                               const std::string& pipeline, bool quick, const Driver* driver) {
   std::vector<Case> all, chosen;
   if (pipeline.empty()) {
     all = crosscheck_cases();
@@ -23,7 +25,10 @@ std::vector<Case> chosen_cases(const std::string& pattern, const std::string& pi
     const std::string name = one.stage + '/' + one.name;
     const bool suits = driver == nullptr || one.slow_too || !driver->slow;
     const bool wanted = (one.quick || !quick) && suits;
-    if (wanted && ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0) chosen.push_back(one);
+    const bool matches = std::any_of(
+        patterns.begin(), patterns.end(),
+        [&](const std::string& glob) { return ::fnmatch(glob.c_str(), name.c_str(), 0) == 0; });
+    if (wanted && (patterns.empty() || matches)) chosen.push_back(one);
   }
   return chosen;
 }
@@ -131,9 +136,9 @@ DriverRun run_cases(const CrosscheckWork& work,
   return run;
 }
 
-int matching_cases(const std::string& pattern, const std::string& pipeline, bool quick,
-                   const Driver* driver) {
-  return static_cast<int>(chosen_cases(pattern, pipeline, quick, driver).size());
+int matching_cases(const std::vector<std::string>& patterns, const std::string& pipeline,
+                   bool quick, const Driver* driver) {
+  return static_cast<int>(chosen_cases(patterns, pipeline, quick, driver).size());
 }
 
 }  // namespace softfocus

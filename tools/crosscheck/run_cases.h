@@ -30,8 +30,8 @@ struct CrosscheckWork {
   const Driver& driver;
   Profile profile;
   Shaders shaders;
-  std::string cases = "*";  ///< a pattern for "stage/name"
-  std::string pipeline{};   ///< a method's name: its cases in place of all others
+  std::vector<std::string> cases;  ///< patterns for "stage/name"; none: all
+  std::string pipeline{};          ///< a method's name: its cases in place of all others
   bool quick = false;
   /// The folder for differing cases: the picture, and both sides' values. Empty: none.
   std::filesystem::path pictures;
@@ -48,8 +48,8 @@ struct DriverRun {
 DriverRun run_cases(const CrosscheckWork& work,
                     const std::function<void(const CaseResult&)>& report);
 
-/// How many cases the pattern stands for, of all or of a pipeline, on a driver, or on any.
-int matching_cases(const std::string& pattern, const std::string& pipeline, bool quick,
-                   const Driver* driver);
+/// How many cases the patterns stand for, of all or of a pipeline, on a driver, or on any.
+int matching_cases(const std::vector<std::string>& patterns, const std::string& pipeline,
+                   bool quick, const Driver* driver);
 
 }  // namespace softfocus

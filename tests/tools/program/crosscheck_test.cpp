@@ -9,6 +9,7 @@
 
 #include "raster/numbers/profile.h"
 #include "tests/support/gl_drivers.h"
+#include "tools/crosscheck/cases.h"
 #include "tools/files/profile_file.h"
 #include "tools/gl/driver/driver.h"
 
@@ -24,17 +25,24 @@ ProgramRun crosscheck(const std::string& driver, const std::string& cases, const
   return run_program(words);
 }
 
-nlohmann::json quick_results(const std::string& driver) {
-  const ProgramRun run = run_program({"crosscheck", "--driver", driver, "--quick", "--json"});
-  CHECK(run.status == 0);
-  CHECK(run.err == "");
-  return nlohmann::json::parse(run.out);
+// Of each stage a case, and each shader once.
+Words few_cases() {
+  Words words;
+  for (const Case& one : quick_cases(true)) {
+    words.insert(words.end(), {"--case", one.stage + '/' + one.name});
+  }
+  return words;
 }
 
-void check_all_equal(const std::string& driver) {
+void check_all_equal(const std::string& driver, const Words& cases = {"--quick"}) {
   if (!has_driver(driver)) return;
+  Words words{"crosscheck", "--driver", driver, "--json"};
+  words.insert(words.end(), cases.begin(), cases.end());
+  const ProgramRun run = run_program(words);
+  CHECK(run.status == 0);
+  CHECK(run.err == "");
   std::set<std::string> stages;
-  for (const auto& entry : quick_results(driver)) {
+  for (const auto& entry : nlohmann::json::parse(run.out)) {
     CAPTURE(entry.dump());
     CHECK(entry["driver"] == driver);
     CHECK(entry["profile"] == find_driver(driver)->profile);
@@ -126,14 +134,14 @@ TEST_CASE("crosscheck: llvmpipe and its profile give the same bits" * doctest::t
 }
 TEST_CASE("crosscheck: llvmpipe held to SSE4.1 and its profile give the same bits" *
           doctest::test_suite("long")) {
-  check_all_equal("llvmpipe-sse41");
+  check_all_equal("llvmpipe-sse41", few_cases());
 }
 TEST_CASE("crosscheck: softpipe and its profile give the same bits" * doctest::test_suite("long")) {
   check_all_equal("softpipe");
 }
 TEST_CASE("crosscheck: lavapipe and its profile, which is llvmpipe's, give the same bits" *
           doctest::test_suite("long")) {
-  check_all_equal("lavapipe");
+  check_all_equal("lavapipe", few_cases());
 }
 
 TEST_CASE("crosscheck: our GLSL on the emulated GPU gives the bits of its C++ form") {
@@ -145,8 +153,10 @@ TEST_CASE("crosscheck: our GLSL on the emulated GPU gives its C++ form's bits by
   for (const NamedProfile& profile : profiles()) {
     if (profile.name == "ieee") continue;  // the test before
     CAPTURE(profile.name);
-    const ProgramRun run = run_program(
-        {"crosscheck", "--driver", "emulated", "--profile", std::string{profile.name}, "--quick"});
+    Words words{"crosscheck", "--driver", "emulated", "--profile", std::string{profile.name}};
+    const Words cases = few_cases();
+    words.insert(words.end(), cases.begin(), cases.end());
+    const ProgramRun run = run_program(words);
     CHECK(run.status == 0);
     CHECK(run.err == "");
   }
@@ -372,9 +382,13 @@ TEST_CASE("crosscheck: bad options are refused with what would be right") {
   refused({"--fast"}, "unknown option '--fast'");
 }
 
-TEST_CASE("crosscheck: a pattern that matches no case is refused") {
+TEST_CASE(
+    "crosscheck: a case is compared if a pattern matches it; one that matches none is refused") {
   if (!has_driver("emulated")) return;
-  const ProgramRun run = crosscheck("emulated", "store");
+  const ProgramRun two = crosscheck("emulated", "two-pass/one-pixel",
+                                    {"--case", "one-pass/one-pix*", "--case", "*-pass/one-pixel"});
+  CHECK(contains(two.out, "2 of 2 cases equal"));
+  const ProgramRun run = crosscheck("emulated", "two-pass/one-pixel", {"--case", "store"});
   CHECK(run.status == 2);
   CHECK(is_one_line(run.err));
   CHECK(contains(run.err, "--case 'store' matches no case"));
