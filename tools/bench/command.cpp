@@ -255,13 +255,29 @@ std::optional<StageSamples> time_command(const BenchOptions& options,
   return is_well ? std::optional{std::move(samples)} : std::nullopt;
 }
 
+/// Each frame of --frames, from its matrices to its picture.
+std::vector<double> time_frames(const BenchOptions& options, BenchWork& work, OurFrame& frame,
+                                Progress& progress) {
+  std::vector<double> frames_ms;
+  if (!options.frames) return frames_ms;
+  for (const FrameNumber number : frames_of(*options.frames)) {
+    progress.show("frame " + std::to_string(number));
+    frames_ms.push_back(milliseconds_of([&] {
+      set_frame(work, options, static_cast<double>(number));
+      draw(frame);
+      filter(frame);
+    }));
+  }
+  return frames_ms;
+}
+
 int bench(const BenchOptions& options) {
   Progress progress{options.quiet};
   const auto show_run = [&](int run) {
     progress.show("run " + std::to_string(run + 1) + " of " + std::to_string(options.runs));
   };
   progress.show("preparing");
-  const BenchWork work = make_work(options);
+  BenchWork work = make_work(options);
   if (!options.effects.empty()) {
     ThreadPool pool{options.pool.threads, options.pool.isa};
     const EffectBench timed =
@@ -310,6 +326,7 @@ int bench(const BenchOptions& options) {
   } else if (auto command = time_command(options, show_run)) {
     record.samples.ours.push_back(std::move(*command));
   }
+  record.frames_ms = time_frames(options, work, frame, progress);
   progress.clear();
   print(record);
   return kDone;

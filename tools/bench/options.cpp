@@ -119,6 +119,11 @@ void add_subject_options(CLI::App& parser, BenchOptions& options) {
             [&options](const std::string& text) { options.image = parse_size("--image", text); });
   add_size(parser, options.size);
   add_frame(parser, options.frame);
+  add_value(parser, "--frames", "A..B[:STEP]",
+            "Time these frames too, one after the other as a player shows them",
+            [&options](const std::string& text) {
+              options.frames = parse_frame_range("--frames", text);
+            });
   add_scene_path(parser, options.scene_path);
 }
 
@@ -179,6 +184,12 @@ void complete(BenchOptions& options, const CLI::App& parser) {
     throw UsageError("--image and --size exclude each other: --image has the size");
   }
   if (options.image) options.size = *options.image;
+  if (options.frames && (options.scene.empty() || options.all_effects || !options.effects.empty() ||
+                         options.arithmetic != Arithmetic::floats)) {
+    throw UsageError(
+        "--frames needs a SCENE, which is drawn and filtered: not --triangles, --image, --effect "
+        "or --arithmetic");
+  }
   if (options.all_effects || !options.effects.empty()) check_effects(options, parser);
   check_method(options, parser);
   if (options.copies && (options.image || options.method.filter == nullptr ||

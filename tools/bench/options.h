@@ -16,6 +16,7 @@
 #include "tools/options/lens_options.h"
 #include "tools/options/method_options.h"
 #include "tools/options/run_options.h"
+#include "tools/sequence/frame_names.h"
 
 namespace softfocus {
 
@@ -27,6 +28,7 @@ struct BenchOptions {
   std::vector<std::filesystem::path> scene_path;
   PictureSize size;
   double frame = 0.0;
+  std::optional<FrameRange> frames;  ///< of a scene: timed one after the other as well
   MethodChoice method{.filter = find_method("two-pass")};
   std::vector<ChosenEffect> effects;  ///< these alone are timed, on the sharp picture
   bool all_effects = false;           ///< all that the subject is enough for

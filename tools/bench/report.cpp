@@ -1,5 +1,6 @@
 #include "tools/bench/report.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -84,6 +85,40 @@ std::string copies_text(const std::string& who, const std::vector<StageSamples>&
          percent(ratio.max) + "]\n";
 }
 
+constexpr double kSixtiethMs = 1000.0 / 60.0;
+
+double kept_by_99_of_100(std::vector<double> frames_ms) {
+  std::sort(frames_ms.begin(), frames_ms.end());
+  return frames_ms[(frames_ms.size() * 99 + 99) / 100 - 1];
+}
+
+std::size_t within_a_sixtieth(const std::vector<double>& frames_ms) {
+  return static_cast<std::size_t>(std::count_if(frames_ms.begin(), frames_ms.end(),
+                                                [](double ms) { return ms <= kSixtiethMs; }));
+}
+
+// "600 frames 12.31 [11.02, 15.20] ms, 99 of 100 within 14.02 ms: 71.33 frames a second; 598 within
+// a 60th of a second"
+std::string frames_text(const std::vector<double>& frames_ms) {
+  if (frames_ms.empty()) return "";
+  const double kept_ms = kept_by_99_of_100(frames_ms);
+  return count_text(static_cast<int>(frames_ms.size()), "frame") + ' ' +
+         spread_text(spread_of(frames_ms)) + " ms, 99 of 100 within " + milliseconds_text(kept_ms) +
+         " ms: " + milliseconds_text(1000.0 / kept_ms) + " frames a second; " +
+         std::to_string(within_a_sixtieth(frames_ms)) + " within a 60th of a second\n";
+}
+
+Json frames_json(const std::vector<double>& frames_ms) {
+  if (frames_ms.empty()) return nullptr;
+  const Spread ms = spread_of(frames_ms);
+  return {{"count", static_cast<int>(frames_ms.size())},
+          {"median_ms", ms.median},
+          {"min_ms", ms.min},
+          {"max_ms", ms.max},
+          {"percentile_99_ms", kept_by_99_of_100(frames_ms)},
+          {"within_a_60th", static_cast<int>(within_a_sixtieth(frames_ms))}};
+}
+
 Json stages_json(const std::vector<StageSamples>& stages) {
   auto list = Json::array();
   for (const StageSamples& stage : stages) {
@@ -145,7 +180,7 @@ std::string bench_text(const BenchRecord& record) {
     for (const StageSamples& ours : record.samples.ours) {
       text += padded(ours.name, kStageWidth) + times_text(ours) + "\n";
     }
-    return text + copies_text("ours", record.samples.ours);
+    return text + copies_text("ours", record.samples.ours) + frames_text(record.frames_ms);
   }
   const std::string& driver = record.peer->driver;
   text += padded("ours, ms [min, max]", kTimesWidth) +
@@ -157,7 +192,7 @@ std::string bench_text(const BenchRecord& record) {
             padded(times_text(record.samples.peers[i]), kTimesWidth) + spread_text(ratio, 2) + "\n";
   }
   return text + copies_text("ours", record.samples.ours) +
-         copies_text(driver, record.samples.peers);
+         copies_text(driver, record.samples.peers) + frames_text(record.frames_ms);
 }
 
 std::string bench_json(const BenchRecord& record) {
@@ -166,6 +201,7 @@ std::string bench_json(const BenchRecord& record) {
   json["method"] = work.method.name();
   json["arithmetic"] = arithmetic_name(record.options.arithmetic);
   json["stages"] = stages_json(record.samples.ours);
+  json["frames"] = frames_json(record.frames_ms);
   for (const char* name : {"triangles", "max_coc", "samples", "chosen", "ratio", "ratio_min",
                            "ratio_max", "equal", "difference"}) {
     json[name] = nullptr;

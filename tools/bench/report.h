@@ -35,6 +35,7 @@ struct BenchRecord {
   std::optional<BenchPeer> peer;
   std::optional<AutoMethod> choice{};  ///< of auto
   int samples_taken = 0;               ///< by a method that draws the scene
+  std::vector<double> frames_ms{};     ///< of --frames, in their order
 };
 
 std::string bench_text(const BenchRecord& record);

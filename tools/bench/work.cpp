@@ -61,9 +61,7 @@ Scene chosen_scene(const BenchOptions& options) {
 }  // namespace
 
 BenchWork make_work(const BenchOptions& options) {
-  const auto [width, height] = options.size;
   BenchWork work;
-  work.frame = options.frame;
   work.size = options.size;
   work.method = options.method;
   work.largest_radius_px = options.max_coc_px;
@@ -75,19 +73,26 @@ BenchWork make_work(const BenchOptions& options) {
   work.profile_name = options.profile_name;
   if (options.image) {
     work.name = "picture";
-    set_lens(work, options, picture_lens(options.max_coc_px, height));
-    work.picture = bench_picture(width, height);
+    work.frame = options.frame;
+    set_lens(work, options, picture_lens(options.max_coc_px, options.size.height));
+    work.picture = bench_picture(options.size.width, options.size.height);
     return work;
   }
   const Scene& scene = work.scene.emplace(chosen_scene(options));
   print_scene_warnings(scene.warnings, false);
   work.name = scene.name;
   work.sampling = with_shutter_of(scene, options.sampling);
-  SceneLens lens = scene.lens;
-  lens.lens = lens_at(scene.lens, work.frame);
-  set_lens(work, options, {lens, scene.camera.fov_y_degrees});
-  work.view = camera_matrices(scene.camera, work.frame, width, height);
+  set_frame(work, options, options.frame);
   return work;
+}
+
+void set_frame(BenchWork& work, const BenchOptions& options, double frame) {
+  const Scene& scene = *work.scene;
+  work.frame = frame;
+  SceneLens lens = scene.lens;
+  lens.lens = lens_at(scene.lens, frame);
+  set_lens(work, options, {lens, scene.camera.fov_y_degrees});
+  work.view = camera_matrices(scene.camera, frame, work.size.width, work.size.height);
 }
 
 namespace {

@@ -36,6 +36,9 @@ struct BenchWork {
 /// Loads or makes the work. Throws UsageError for an impossible lens, SceneError for a scene.
 BenchWork make_work(const BenchOptions& options);
 
+/// Turns work that has a scene to another of its frames. Throws as make_work().
+void set_frame(BenchWork& work, const BenchOptions& options, double frame);
+
 // A picture to filter without drawing one: it has every circle of confusion, and silhouettes.
 
 /// The focus distance that the picture is made for.

@@ -134,6 +134,22 @@ TEST_CASE("bench: a scene's file, another frame and another lens can be measured
         12);
 }
 
+TEST_CASE("bench: --frames times each frame of the animation, and says what 99 of 100 keep to") {
+  const json frames = benched(kScene, {"--frames", "0..30:2"})["frames"];
+  CHECK(frames["count"] == 16);
+  CHECK(frames["min_ms"] > 0.0);
+  CHECK(frames["min_ms"] <= frames["median_ms"]);
+  CHECK(frames["median_ms"] <= frames["percentile_99_ms"]);
+  CHECK(frames["percentile_99_ms"] == frames["max_ms"]);  // 15 of 16 are not 99 of 100
+  CHECK(frames["within_a_60th"] <= 16);
+  CHECK(benched(kScene)["frames"].is_null());
+  const ProgramRun run =
+      run_program({"bench", "figures", "--size", "32x32", "--runs", "10", "--frames", "7"});
+  CHECK(contains(run.out, "\n1 frame "));
+  CHECK(contains(run.out, " ms, 99 of 100 within "));
+  CHECK(contains(run.out, " within a 60th of a second\n"));
+}
+
 TEST_CASE("bench: of a picture only the filter is timed, and there are no triangles") {
   const json result = benched(kPicture);
   CHECK(result["scene"] == "picture");
@@ -374,6 +390,8 @@ TEST_CASE("bench: bad options are refused with what would be right") {
   refused({"figures", "--effect", "bloom", "--copy"}, {"--copy needs"});
   refused({"--image", "64x64", "--copy"}, {"--copy needs", "SCENE"});
   refused({"figures", "--method", "accumulation", "--copy"}, {"--copy needs"});
+  refused({"--triangles", "1500", "--frames", "0..9"}, {"--frames needs a SCENE", "--triangles"});
+  refused({"figures", "--frames", "9..0"}, {"--frames '9..0'"});
   refused({"figures", "cube-room"}, {"unexpected argument 'cube-room'"});
   refused({"no-such-scene"}, {"no-such-scene"}, 1);
 }
