@@ -42,8 +42,9 @@ void clear_targets(const RenderPass& pass, const Rectangle& area) {
   }
 }
 
-// clear_behind() for a tile whose pixels are in the targets.
-void clear_behind(const RenderPass& pass, const Rectangle& area) {
+// For a tile whose pixels are in the targets.
+void clear_behind_in(const RenderPass& pass, const Rectangle& area, const glm::vec4& colour,
+                     float depth) {
   const RenderTargets& targets = pass.targets;
   for (int y = area.y_begin; y < area.y_end; ++y) {
     const std::span<const float> nearest = row<float>(*targets.depth, y);
@@ -51,8 +52,8 @@ void clear_behind(const RenderPass& pass, const Rectangle& area) {
       if (nearest[static_cast<std::size_t>(x)] < *pass.behind_before) continue;
       const Rectangle pixel{x, y, x + 1, y + 1};
       for (const LayerTarget& layer : targets.behind) {
-        clear_area(pass, layer.colour, pixel, *pass.clear_colour);
-        clear_area(pass, layer.depth, pixel, glm::vec4{*pass.clear_depth});
+        clear_area(pass, layer.colour, pixel, colour);
+        clear_area(pass, layer.depth, pixel, glm::vec4{depth});
       }
     }
   }
@@ -86,7 +87,7 @@ class TileDrawing {
       if (is_cleared_) clear_unseen(pass_.isa, *memory_, *pass_.clear_colour, pass_.profile);
     } else if (drops) {
       clear();
-      clear_behind(pass_, area_);
+      clear_behind_in(pass_, area_, *pass_.clear_colour, *pass_.clear_depth);
     }
     leave_lanes(pass_.keep_depth);
     clear();
@@ -212,6 +213,13 @@ void finish(RenderPass& pass, ThreadPool& pool) {
   for_each_with<TileMemory>(pool, tile_count(lists),
                             [&](int tile, auto& memory) { draw_tile(pass, lists, tile, memory); });
   pass.draws.clear();
+}
+
+void clear_behind(const RenderPass& pass, const glm::vec4& colour, float depth, ThreadPool& pool) {
+  const Rectangle all = target_area(pass.targets);
+  pool.for_each(all.y_end, [&](int y) {
+    clear_behind_in(pass, {all.x_begin, y, all.x_end, y + 1}, colour, depth);
+  });
 }
 
 }  // namespace softfocus

@@ -96,4 +96,8 @@ void draw_tile_aside(const RenderPass& pass, const TileLists& lists, int tile, T
 /// Carries out the recorded draws and forgets them.
 void finish(RenderPass& pass, ThreadPool& pool);
 
+/// What `behind_before`, which is needed, does in one pass, for several on the same targets: clears
+/// the layers behind the first where they are not wanted.
+void clear_behind(const RenderPass& pass, const glm::vec4& colour, float depth, ThreadPool& pool);
+
 }  // namespace softfocus

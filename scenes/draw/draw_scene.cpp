@@ -352,12 +352,54 @@ void blend_transparent(PreparedScene& prepared, const CameraMatrices& camera, do
       });
 }
 
+// Of a pass, a million and a half triangles: what becomes of them is kept until its tiles are
+// drawn.
+constexpr std::size_t kPassChunks = 1536;
+
+std::size_t chunks_of_scene(const Scene& scene) {
+  std::size_t chunks = 0;
+  for (const Object& object : scene.objects) chunks += chunks_of_mesh(scene.meshes[object.mesh]);
+  return chunks;
+}
+
+// A scene of any number of objects, in passes on the same targets: the same bits.
+void draw_in_passes(const PreparedScene& prepared, const CameraMatrices& camera, double frame,
+                    std::span<const Light> lights, RenderPass& pass, ThreadPool& pool) {
+  const Scene& scene = *prepared.scene;
+  const std::optional<float> behind_before = std::exchange(pass.behind_before, std::nullopt);
+  pass.clear_colour = clear_colour(scene);
+  pass.clear_depth = 1.0f;
+  pass.keep_depth = true;
+  std::size_t chunks = 0;
+  for (const Object& object : scene.objects) {
+    const std::size_t more = chunks_of_mesh(scene.meshes[object.mesh]);
+    if (chunks > 0 && chunks + more > kPassChunks) {
+      finish(pass, pool);
+      pass.clear_colour.reset();
+      pass.clear_depth.reset();
+      chunks = 0;
+    }
+    SurfaceDraw surface = surface_draw(scene, object, camera, frame);
+    if (surface.opacity.blends) continue;
+    surface.input.lights = lights;
+    draw_surface(prepared, surface, pass);
+    chunks += more;
+  }
+  finish(pass, pool);
+  pass.behind_before = behind_before;
+  if (behind_before) clear_behind(pass, clear_colour(scene), 1.0f, pool);
+}
+
 // Into the targets that the scene's pass has, which are `layers`.
 void draw_lit_by(PreparedScene& prepared, const CameraMatrices& camera, double frame,
                  std::span<const Light> lights, std::span<Image* const> layers, ThreadPool& pool) {
   RenderPass& pass = prepared.pass;
-  record_scene(prepared, camera, frame, pass, lights);
-  finish(pass, pool);
+  if (chunks_of_scene(*prepared.scene) > kPassChunks) {
+    draw_in_passes(prepared, camera, frame, lights, pass, pool);
+  } else {
+    record_scene(prepared, camera, frame, pass, lights);
+    finish(pass, pool);
+  }
   if (!prepared.shadows) return;
   add_shadows(prepared, camera, frame, lights, layers, pass.behind_before, pool);
 }

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
@@ -171,5 +172,47 @@ TEST_CASE("layers of a scene: behind what is in focus or farther nothing is draw
     CHECK(wrong == 0);
     CHECK(kept > 1000);
     CHECK(dropped > 1000);
+  }
+}
+
+TEST_CASE("layers of a scene of more objects than a pass takes have the bits of one pass") {
+  std::vector<double> depths;
+  for (int i = 0; i < 4000; ++i) depths.push_back(1.0 + (i * 7919 % 4001) / 100.0);
+  Scene scene = squares_at(depths);
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const auto number = static_cast<double>(i);
+    scene.objects[i].scale = glm::dvec3{0.03};
+    scene.objects[i].rotation_degrees = {0.0, 0.0, number};
+    scene.objects[i].position.x =
+        scene.objects[i].position.z * (std::fmod(0.37 * number, 1.0) - 0.5);
+    scene.objects[i].position.y =
+        scene.objects[i].position.z * (std::fmod(0.71 * number, 0.6) - 0.3);
+  }
+  const Camera& view = scene.camera;
+  const CameraMatrices camera = camera_matrices(view, 0.0, kAcross, kDown);
+  constexpr double kLimitM = 8.0;
+  const double before =
+      view.far_m * (kLimitM - view.near_m) / (kLimitM * (view.far_m - view.near_m));
+  for (const Isa isa : {Isa::scalar, widest_isa()}) {
+    for (const bool is_limited : {false, true}) {
+      CAPTURE(isa_name(isa));
+      CAPTURE(is_limited);
+      ThreadPool pool{2, isa};
+      std::vector<Image> layers(3, make_image(Format::rgba16f, kAcross, kDown));
+      std::vector<Image> expected = layers;
+      std::vector<Image> depth(3, make_image(Format::r32f, kAcross, kDown));
+      PreparedScene prepared = prepare_scene(scene, {}, pool);
+      draw_layers(prepared, camera, 0.0, layers[0], std::span{layers}.subspan(1), pool,
+                  is_limited ? std::optional{kLimitM} : std::nullopt);
+      RenderPass pass{.isa = pool.isa()};
+      pass.targets.colour[0] = &expected[0];
+      pass.targets.depth = &depth[0];
+      for (std::size_t i = 0; i < 2; ++i)
+        pass.targets.behind[i] = {&expected[i + 1], &depth[i + 1]};
+      if (is_limited) pass.behind_before = static_cast<float>(before);
+      record_scene(prepared, camera, 0.0, pass);
+      finish(pass, pool);
+      check_layers(layers, expected);
+    }
   }
 }
