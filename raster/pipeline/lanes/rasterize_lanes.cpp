@@ -341,7 +341,8 @@ void set_unseen(const VisibilityTile& tile, const TileLayer& layer, const std::b
   const int height = tile.area.y_end - tile.area.y_begin;
   for (std::uint32_t place = 0; place < kTilePixels; place += kLanes) {
     const Ints ids = load(&layer.ids[place]);
-    const unsigned unseen = lane_bits(ids == 0);
+    const unsigned unseen = equal_lane_bits(ids, Ints{});
+    if (unseen == 0) continue;
     const int left = tile_x(place), top = tile_y(place);
     if (unseen == kAllLaneBits && left + kPartColumns <= width && top + kPartRows <= height) {
       std::byte* to = layer.texels + static_cast<std::size_t>(top) * layer.stride_bytes +
