@@ -121,8 +121,7 @@ SOFTFOCUS_INLINE std::uint32_t triangle_of(std::uint32_t entry) {
   const auto block = static_cast<int>(place / kBlockPixels);
   const auto part = static_cast<int>(place % kBlockPixels) / kLanes;
   const int x = block % kTileBlocks * kBlockSize + part * kPartColumns % kBlockSize;
-  const int y =
-      block / kTileBlocks * kBlockSize + part * kPartColumns / kBlockSize * kPartRows;
+  const int y = block / kTileBlocks * kBlockSize + part * kPartColumns / kBlockSize * kPartRows;
   return lane_bits((x + lane_x() < x_end) & (y + lane_y() < y_end));
 }
 
