@@ -134,15 +134,16 @@ SOFTFOCUS_INLINE std::uint32_t triangle_of(std::uint32_t entry) {
   std::uint32_t* to = seen.entries.data();
   for (std::int32_t id = run.first_id; id < run.end_id; ++id) {
     const auto& bounds = tile.triangles[static_cast<std::size_t>(id - 1)]->bounds;
-    const int x_begin = std::max<int>(bounds[0] - tile.area.x_begin, 0) & -kBlockSize;
-    const int y_begin = std::max<int>(bounds[1] - tile.area.y_begin, 0) & -kBlockSize;
+    const int x_begin = std::max<int>(bounds[0] - tile.area.x_begin, 0) & -kPartColumns;
+    const int y_begin = std::max<int>(bounds[1] - tile.area.y_begin, 0) & -kPartRows;
     const int x_end = std::min<int>(bounds[2] - tile.area.x_begin, width);
     const int y_end = std::min<int>(bounds[3] - tile.area.y_begin, height);
     const auto triangle = static_cast<std::uint32_t>(id - run.first_id) << kQuadBits;
     const Ints own = splat(id);
-    for (int y = y_begin; y < y_end; y += kBlockSize) {
-      const std::size_t end = place_of_pixel((x_end - 1) & -kBlockSize, y) + kBlockPixels;
-      for (std::size_t place = place_of_pixel(x_begin, y); place < end; place += kLanes) {
+    for (int y = y_begin; y < y_end; y += kPartRows) {
+      const std::size_t last = place_of_pixel((x_end - 1) & -kPartColumns, y);
+      for (std::size_t place = place_of_pixel(x_begin, y); place <= last;
+           place = next_part_place(place)) {
         unsigned pixels = equal_lane_bits(load(&layer.ids[place]), own);
         if (pixels == 0) continue;
         if (is_cut) pixels &= pixels_before(place, width, height);
