@@ -95,18 +95,36 @@ SOFTFOCUS_INLINE Floats mix_levels(Floats fine, Floats coarse, Floats weight) {
 
 /// A bilinear fetch a lane: its texels' offsets, first row before second, and weights.
 struct FetchLanes {
+  /// Of squares the first texel's alone.
   alignas(64) std::int32_t offsets[4][kLanes];
   Floats weight_u, weight_v;
   Floats weight_w;  ///< of the slice behind, in a volume
   bool neighbours;  ///< whether every lane's second texel of a row lies beside the first
+  /// Floats from row to row if also the second row lies below the first, in one level: then every
+  /// lane reads a square. Else 0.
+  std::int32_t square_row;
 };
 
-/// Both texels of a row, for a group. `neighbours` come in one load: a third faster on AVX-512,
+/// How the four texels of a fetch lie.
+enum class Footprint : std::uint8_t { apart, pairs, squares };
+
+/// Adds the offsets that squares do without.
+[[gnu::noinline]] inline void complete_offsets(FetchLanes& fetch) {
+  if (fetch.square_row == 0) return;
+  const Ints first = load(fetch.offsets[0]);
+  store(fetch.offsets[1], first + 4);
+  store(fetch.offsets[2], first + fetch.square_row);
+  store(fetch.offsets[3], first + fetch.square_row + 4);
+  keep_in_memory(fetch.offsets);
+  fetch.square_row = 0;
+}
+
+/// Both texels of a row, for a group. Neighbours come in one load: a third faster on AVX-512,
 /// and it saves offsets on all units.
-template <bool neighbours>
+template <Footprint footprint>
 SOFTFOCUS_INLINE void load_row(const float* texels, const std::int32_t* first_offsets,
                                const std::int32_t* second_offsets, Floats& first, Floats& second) {
-  if constexpr (!neighbours) {
+  if constexpr (footprint == Footprint::apart) {
     first = load_texels(texels, first_offsets);
     second = load_texels(texels, second_offsets);
     return;
@@ -131,24 +149,29 @@ SOFTFOCUS_INLINE void load_row(const float* texels, const std::int32_t* first_of
 #endif
 }
 
-template <LaneArithmetic arithmetic, bool neighbours, int group>
+template <LaneArithmetic arithmetic, Footprint footprint, int group>
 SOFTFOCUS_INLINE Floats filter_level(const float* texels, const FetchLanes& fetch) {
+  // One offset a lane serves both rows of a square.
+  constexpr bool kSquare = footprint == Footprint::squares;
+  const float* second_row = kSquare ? texels + fetch.square_row : texels;
+  constexpr std::size_t kSecondRow = kSquare ? 0 : 2;
   const Floats weight_u = spread<group>(fetch.weight_u);
   Floats first, second;
-  load_row<neighbours>(texels, fetch.offsets[0] + group, fetch.offsets[1] + group, first, second);
+  load_row<footprint>(texels, fetch.offsets[0] + group, fetch.offsets[1] + group, first, second);
   const Floats upper = mix<arithmetic>(first, second, weight_u);
-  load_row<neighbours>(texels, fetch.offsets[2] + group, fetch.offsets[3] + group, first, second);
+  load_row<footprint>(second_row, fetch.offsets[kSecondRow] + group,
+                      fetch.offsets[kSecondRow + 1] + group, first, second);
   const Floats lower = mix<arithmetic>(first, second, weight_u);
   return mix<arithmetic>(upper, lower, spread<group>(fetch.weight_v));
 }
 
 /// `coarse` is the next level's, read if there are `two_levels`.
-template <LaneArithmetic arithmetic, bool neighbours, bool two_levels, int group>
+template <LaneArithmetic arithmetic, Footprint footprint, bool two_levels, int group>
 SOFTFOCUS_INLINE Floats filter_group(const float* texels, const FetchLanes& fine,
                                      const FetchLanes& coarse, Floats next_weight) {
-  const Floats colour = filter_level<arithmetic, neighbours, group>(texels, fine);
+  const Floats colour = filter_level<arithmetic, footprint, group>(texels, fine);
   if constexpr (!two_levels) return colour;
-  const Floats next = filter_level<arithmetic, neighbours, group>(texels, coarse);
+  const Floats next = filter_level<arithmetic, footprint, group>(texels, coarse);
   const Floats weight = spread<group>(next_weight);
   if constexpr (arithmetic == LaneArithmetic::swiftshader)
     return mix_levels<arithmetic>(colour, next, weight);
@@ -158,15 +181,15 @@ SOFTFOCUS_INLINE Floats filter_group(const float* texels, const FetchLanes& fine
 
 /// Not inlined: with all forms in one function g++ computes all their addresses first and runs out
 /// of registers. That takes half as long again.
-template <LaneArithmetic arithmetic, bool neighbours, bool two_levels>
+template <LaneArithmetic arithmetic, Footprint footprint, bool two_levels>
 [[gnu::noinline]] void filter_lanes(const float* texels, const FetchLanes& fine,
                                     const FetchLanes& coarse, const Floats& next_weight,
                                     RgbaLanes& colour) {
   colour = transpose_groups(
-      filter_group<arithmetic, neighbours, two_levels, 0>(texels, fine, coarse, next_weight),
-      filter_group<arithmetic, neighbours, two_levels, 1>(texels, fine, coarse, next_weight),
-      filter_group<arithmetic, neighbours, two_levels, 2>(texels, fine, coarse, next_weight),
-      filter_group<arithmetic, neighbours, two_levels, 3>(texels, fine, coarse, next_weight));
+      filter_group<arithmetic, footprint, two_levels, 0>(texels, fine, coarse, next_weight),
+      filter_group<arithmetic, footprint, two_levels, 1>(texels, fine, coarse, next_weight),
+      filter_group<arithmetic, footprint, two_levels, 2>(texels, fine, coarse, next_weight),
+      filter_group<arithmetic, footprint, two_levels, 3>(texels, fine, coarse, next_weight));
 }
 
 }  // namespace

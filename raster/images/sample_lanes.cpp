@@ -123,6 +123,7 @@ SOFTFOCUS_INLINE void put_fetch(const SliceLanes& slice, const TapLanes& u, cons
   fetch.weight_u = u.weight;
   fetch.weight_v = v.weight;
   fetch.neighbours = all(u.second == u.first + 1);
+  fetch.square_row = 0;
 }
 
 /// `behind`: of a volume, the next slice's.
@@ -211,20 +212,101 @@ SOFTFOCUS_INLINE void plan_linear(const PlaceLanes& place, const LevelLanes& lev
                                 behind == nullptr ? nullptr : &behind->coarse);
 }
 
+// --- textures that repeat, of sizes that are powers of two ---
+
+/// Whether plan_repeating() may plan.
+template <LaneArithmetic arithmetic, TextureShape shape>
+SOFTFOCUS_INLINE bool is_planned_quickly(const DecodedTexture& texture, const Sampler& sampler) {
+  constexpr bool kIsStandard = arithmetic == LaneArithmetic::standard ||
+                               arithmetic == LaneArithmetic::standard_fixed_8 ||
+                               arithmetic == LaneArithmetic::standard_integers;
+  return kIsStandard && shape == TextureShape::flat && sampler.filter != Filter::nearest &&
+         sampler.wrap_u == Wrap::repeat && sampler.wrap_v == Wrap::repeat &&
+         texture.u.are_powers_of_two && texture.v.are_powers_of_two;
+}
+
+/// standard_taps() but for the second texel.
+template <bool fixed_8>
+SOFTFOCUS_INLINE TapLanes repeated_taps(Floats coordinate, Floats size, Ints last) {
+  Floats position = smaller(larger(coordinate * size, splat(-0x1p22f)), splat(0x1p22f)) - 0.5f;
+  if (fixed_8) position = nearest(position * 256.0f) * (1.0f / 256.0f);
+  const Floats base = floor(position);
+  return {truncate(base) & last, splat(0), position - base};
+}
+
 template <LaneArithmetic arithmetic>
-SOFTFOCUS_INLINE void filter_plan(const float* texels, const SamplePlan& plan, RgbaLanes& colour) {
-  const FetchLanes& fine = plan.fine;
+SOFTFOCUS_INLINE void find_repeating(const PlaceLanes& place, std::size_t level,
+                                     FetchLanes& fetch) {
+  constexpr bool kFixed = has_fixed_weights(arithmetic);
+  const DecodedTexture& texture = place.texture;
+  const Floats width = splat(texture.u.sizes[level]), height = splat(texture.v.sizes[level]);
+  const Ints columns = truncate(width), last_u = columns - 1, last_v = truncate(height) - 1;
+  const TapLanes u = repeated_taps<kFixed>(place.u, width, last_u);
+  const TapLanes v = repeated_taps<kFixed>(place.v, height, last_v);
+  fetch.weight_u = u.weight;
+  fetch.weight_v = v.weight;
+  const Ints start = splat(texture.starts[level]), row = columns << 2;
+  const Ints upper = start + v.first * row, first = upper + (u.first << 2);
+  store(fetch.offsets[0], first);
+  fetch.neighbours = !any(u.first == last_u);
+  fetch.square_row = 0;
+  if (!any((u.first == last_u) | (v.first == last_v))) {
+    fetch.square_row = row[0];
+  } else {
+    const Ints second_u = (u.first + 1) & last_u, second_v = (v.first + 1) & last_v;
+    const Ints lower = start + second_v * row;
+    store(fetch.offsets[1], upper + (second_u << 2));
+    store(fetch.offsets[2], lower + (u.first << 2));
+    store(fetch.offsets[3], lower + (second_u << 2));
+  }
+  keep_in_memory(fetch.offsets);
+  const float* texels = texture.texels.data();
+#pragma GCC unroll 8
+  for (int lane = 0; lane < kLanes; lane += 2) {
+    __builtin_prefetch(texels + fetch.offsets[0][lane]);
+    __builtin_prefetch(texels + fetch.square_row + fetch.offsets[0][lane]);
+  }
+}
+
+/// plan_linear() of a vector whose lanes read the same levels. False if they do not.
+template <LaneArithmetic arithmetic>
+SOFTFOCUS_INLINE bool plan_repeating(const PlaceLanes& place, const LevelLanes& levels,
+                                     SamplePlan& plan) {
+  if (equal_lane_bits(levels.first, splat(levels.first[0])) != kAllLaneBits) return false;
+  const auto level = static_cast<std::size_t>(levels.first[0]);
+  plan.next_weight = levels.next_weight;
+  plan.by_lane = false;
+  plan.two_levels = any(levels.next_weight > 0.0f);
+  find_repeating<arithmetic>(place, level, plan.fine);
+  // A level that is mixed with the next is not the last.
+  if (plan.two_levels) find_repeating<arithmetic>(place, level + 1, plan.coarse);
+  return true;
+}
+
+template <LaneArithmetic arithmetic>
+SOFTFOCUS_INLINE void filter_plan(const float* texels, SamplePlan& plan, RgbaLanes& colour) {
+  using enum Footprint;
+  FetchLanes& fine = plan.fine;
+  FetchLanes& coarse = plan.coarse;
   const Floats& weight = plan.next_weight;
   if (!plan.two_levels) {
-    if (fine.neighbours) {
-      filter_lanes<arithmetic, true, false>(texels, fine, fine, weight, colour);
+    if (fine.square_row != 0) {
+      filter_lanes<arithmetic, squares, false>(texels, fine, fine, weight, colour);
+    } else if (fine.neighbours) {
+      filter_lanes<arithmetic, pairs, false>(texels, fine, fine, weight, colour);
     } else {
-      filter_lanes<arithmetic, false, false>(texels, fine, fine, weight, colour);
+      filter_lanes<arithmetic, apart, false>(texels, fine, fine, weight, colour);
     }
-  } else if (fine.neighbours && plan.coarse.neighbours) {
-    filter_lanes<arithmetic, true, true>(texels, fine, plan.coarse, weight, colour);
+  } else if (fine.square_row != 0 && coarse.square_row != 0) {
+    filter_lanes<arithmetic, squares, true>(texels, fine, coarse, weight, colour);
   } else {
-    filter_lanes<arithmetic, false, true>(texels, fine, plan.coarse, weight, colour);
+    complete_offsets(fine);
+    complete_offsets(coarse);
+    if (fine.neighbours && coarse.neighbours) {
+      filter_lanes<arithmetic, pairs, true>(texels, fine, coarse, weight, colour);
+    } else {
+      filter_lanes<arithmetic, apart, true>(texels, fine, coarse, weight, colour);
+    }
   }
 }
 
@@ -234,11 +316,11 @@ SOFTFOCUS_INLINE void filter_slices(const float* texels, const FetchLanes& front
                                     const FetchLanes& behind, RgbaLanes& colour) {
   RgbaLanes next;
   if (front.neighbours) {
-    filter_lanes<arithmetic, true, false>(texels, front, front, front.weight_w, colour);
-    filter_lanes<arithmetic, true, false>(texels, behind, behind, front.weight_w, next);
+    filter_lanes<arithmetic, Footprint::pairs, false>(texels, front, front, front.weight_w, colour);
+    filter_lanes<arithmetic, Footprint::pairs, false>(texels, behind, behind, front.weight_w, next);
   } else {
-    filter_lanes<arithmetic, false, false>(texels, front, front, front.weight_w, colour);
-    filter_lanes<arithmetic, false, false>(texels, behind, behind, front.weight_w, next);
+    filter_lanes<arithmetic, Footprint::apart, false>(texels, front, front, front.weight_w, colour);
+    filter_lanes<arithmetic, Footprint::apart, false>(texels, behind, behind, front.weight_w, next);
   }
   colour.r = mix<arithmetic>(colour.r, next.r, front.weight_w);
   colour.g = mix<arithmetic>(colour.g, next.g, front.weight_w);
@@ -364,11 +446,16 @@ template <LaneArithmetic arithmetic, TextureShape shape>
   constexpr bool kIsVolume = shape == TextureShape::volume;
   const int last = texture.level_count - 1;
   const bool trilinear = sampler.filter == Filter::trilinear;
+  const bool is_quick = is_planned_quickly<arithmetic, shape>(texture, sampler);
   std::array<SamplePlan, kIsVolume ? 2 * kMostSampled : kMostSampled> plans;
   for (int i = 0; i < count; ++i) {
     const PlaceLanes place = find_place<arithmetic, shape>(texture, sampler, points, i);
     const LevelLanes levels =
         choose_levels<arithmetic>(load(points.lod + i * kLanes), last, trilinear);
+    if constexpr (shape == TextureShape::flat) {
+      if (is_quick && plan_repeating<arithmetic>(place, levels, plans[static_cast<std::size_t>(i)]))
+        continue;
+    }
     if (sampler.filter == Filter::nearest) {
       colours[i] = sample_nearest<arithmetic, shape>(place, levels.first);
     } else {
@@ -380,7 +467,7 @@ template <LaneArithmetic arithmetic, TextureShape shape>
   const int channels = channel_count(texture.source->levels.front().format);
   for (int i = 0; i < count; ++i) {
     if (sampler.filter != Filter::nearest) {
-      const SamplePlan& plan = plans[static_cast<std::size_t>(i)];
+      SamplePlan& plan = plans[static_cast<std::size_t>(i)];
       if (plan.by_lane) {
         sample_by_lane(texture, sampler, profile, points, i, colours[i]);
         continue;

@@ -410,13 +410,24 @@ alignas(16) inline constexpr std::int32_t kKeptLanes[16][4] = {
     {2, 3, 0, 0}, {0, 2, 3, 0}, {1, 2, 3, 0}, {0, 1, 2, 3}};
 SOFTFOCUS_INLINE Compression compression(Mask mask) { return load(kKeptLanes[lane_bits(mask)]); }
 #else
-SOFTFOCUS_INLINE Compression compression(Mask mask) {
-  Ints kept{};
-  int count = 0;
-  for (unsigned bits = lane_bits(mask); bits != 0; bits &= bits - 1) {
-    kept[count++] = __builtin_ctz(bits);
+// A byte a place, by the mask's bits.
+struct KeptLanes {
+  std::uint64_t places[256];
+};
+constexpr KeptLanes find_kept_lanes() {
+  KeptLanes kept{};
+  for (unsigned bits = 0; bits < 256; ++bits) {
+    int count = 0;
+    for (unsigned lane = 0; lane < 8; ++lane) {
+      if ((bits >> lane & 1u) != 0) kept.places[bits] |= std::uint64_t{lane} << (8 * count++);
+    }
   }
   return kept;
+}
+inline constexpr KeptLanes kKeptLanes = find_kept_lanes();
+SOFTFOCUS_INLINE Compression compression(Mask mask) {
+  return (Ints)_mm256_cvtepu8_epi32(
+      _mm_cvtsi64_si128(static_cast<long long>(kKeptLanes.places[lane_bits(mask)])));
 }
 #endif
 SOFTFOCUS_INLINE Floats compress(Floats v, Compression kept) { return pick(v, kept); }
@@ -603,6 +614,29 @@ SOFTFOCUS_INLINE Bits float_to_half(Floats value) {
   return select(magnitude > 0x7F800000u, splat(std::uint32_t{kHalfNan}), sign | half);
 #endif
 }
+
+#if SOFTFOCUS_LANES >= 8
+/// Every NaN as the one that is stored (half.h).
+SOFTFOCUS_INLINE Floats with_plain_nan(Floats v) {
+  return select(v == v, v, as_floats(splat(std::uint32_t{0x7FC00000u})));
+}
+
+/// kLanes halves side by side, in words of four.
+using HalfVector [[gnu::vector_size(2 * SOFTFOCUS_LANES)]] = std::uint64_t;
+
+/// float_to_half() of with_plain_nan().
+template <HalfRounding rounding>
+SOFTFOCUS_INLINE HalfVector to_halves(Floats value) {
+  static_assert(rounding != HalfRounding::swiftshader);
+  constexpr int kRounding =
+      rounding == HalfRounding::nearest_even ? _MM_FROUND_TO_NEAREST_INT : _MM_FROUND_TO_ZERO;
+#if SOFTFOCUS_LANES == 16
+  return (HalfVector)_mm512_maskz_cvtps_ph(0xFFFF, (__m512)value, kRounding);
+#else
+  return (HalfVector)_mm256_cvtps_ph((__m256)value, kRounding);
+#endif
+}
+#endif
 
 // --- pixels of RGBA16F ---
 

@@ -100,7 +100,7 @@ SOFTFOCUS_INLINE Mask covers_nothing(const EdgeLanes& edges, Ints width, Ints he
 
 // kLanes triangles, to be read one at a time.
 struct TriangleColumns {
-  alignas(64) std::array<std::array<std::int32_t, kLanes>, 3> edge, per_x, per_y, threshold, index;
+  alignas(64) std::array<std::array<std::int32_t, kLanes>, 3> edge, slopes, threshold, index;
   alignas(64) std::array<std::array<std::int32_t, kLanes>, 4> bounds;
   alignas(64) std::array<std::array<float, kLanes>, 3> depth;
   alignas(64) std::array<float, kLanes> inverse_area;
@@ -119,8 +119,7 @@ SOFTFOCUS_INLINE void copy_triangle(const TriangleColumns& columns, std::size_t 
 #pragma GCC unroll 3
   for (std::size_t i = 0; i < 3; ++i) {
     t.edge[i] = columns.edge[i][lane];
-    t.per_x[i] = columns.per_x[i][lane];
-    t.per_y[i] = columns.per_y[i][lane];
+    t.slopes[i] = columns.slopes[i][lane];
     t.depth[i] = columns.depth[i][lane];
     t.thresholds[i] = static_cast<std::int8_t>(columns.threshold[i][lane]);
     const auto vertex = static_cast<std::size_t>(columns.index[i][lane]);
@@ -139,6 +138,7 @@ SOFTFOCUS_INLINE void copy_triangle(const TriangleColumns& columns, std::size_t 
   t.x_origin = t.bounds[0];
   t.y_origin = t.bounds[1];
   t.inverse_area = columns.inverse_area[lane];
+  t.is_large = false;
   t.large = nullptr;
   t.clockwise = (columns.clockwise >> lane & 1u) != 0;
   t.front_facing = t.clockwise == (job.front_face == FrontFace::clockwise);
@@ -228,8 +228,8 @@ void assemble(const AssembleJob& job, LaneChunk& chunk) {
 
     if (kept_bits != 0) {
       for (std::size_t i = 0; i < 3; ++i) {
-        store_to(columns.per_x[i], edges.per_x[i]);
-        store_to(columns.per_y[i], edges.per_y[i]);
+        // packed_slopes().
+        store_to(columns.slopes[i], (edges.per_x[i] >> 8 & 0xFFFF) | (edges.per_y[i] >> 8) << 16);
         store_to(columns.edge[i], edges.at_origin[i]);
         store_to(columns.threshold[i], edges.threshold[i]);
         store_to(columns.index[i], index[i]);

@@ -8,6 +8,12 @@ inline constexpr int kBlockParts = kBlockPixels / kLanes;
 inline constexpr int kPartColumns = kQuads > 1 ? 4 : 2;
 inline constexpr int kPartRows = kQuads > 2 ? 4 : 2;
 
+// The place of the part to the right in a row of parts.
+SOFTFOCUS_INLINE constexpr std::size_t next_part_place(std::size_t place) {
+  if (kPartColumns == kBlockSize) return place + kBlockPixels;
+  return place % (2 * kQuadPixels) == 0 ? place + kQuadPixels : place + kBlockPixels - kQuadPixels;
+}
+
 // A lane's pixel, from the part's first.
 SOFTFOCUS_INLINE constexpr int lane_x(int lane) { return (lane & 1) + (lane >> 1 & 2); }
 SOFTFOCUS_INLINE constexpr int lane_y(int lane) { return (lane >> 1 & 1) + (lane >> 2 & 2); }

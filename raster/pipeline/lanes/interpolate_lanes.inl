@@ -17,13 +17,16 @@ using VertexRows = std::array<const float*, kQuads>;
 template <std::size_t N>
 using VaryingLanes = std::array<Floats, (N + 3) / 4 * 4>;
 
+SOFTFOCUS_INLINE void spread_four(Floats four, Floats* to) {
+  to[0] = spread<0>(four);
+  to[1] = spread<1>(four);
+  to[2] = spread<2>(four);
+  to[3] = spread<3>(four);
+}
+
 /// The varyings from `i` on that lie in the same four lanes of a vertex's row.
 SOFTFOCUS_INLINE void load_four_varyings(const VertexRows& rows, std::size_t i, Floats* varyings) {
-  const Floats four = load_fours(rows.data(), kVertexVaryings + i);
-  varyings[0] = spread<0>(four);
-  varyings[1] = spread<1>(four);
-  varyings[2] = spread<2>(four);
-  varyings[3] = spread<3>(four);
+  spread_four(load_fours(rows.data(), kVertexVaryings + i), varyings);
 }
 
 /// What a triangle's varyings are loaded with. `varyings`: how many the draw has.
@@ -46,7 +49,7 @@ struct BarycentricLanes {
   /// At vertex 0, the differences of the others to it, and at the provoking vertex.
   VaryingLanes<N> first, to_second, to_third, flat;
   std::array<Floats, 3> inverse_w{};
-  std::array<Ints, 3> edge{}, per_x{}, per_y{};
+  std::array<Ints, 3> edge{}, slopes{};
   Ints x_origin{}, y_origin{};
   Floats inverse_area{};
   const QuadTriangles* of_quads = nullptr;
@@ -80,26 +83,23 @@ struct BarycentricLanes {
       numbers[quad] = reinterpret_cast<const float*>(triangles[quad]);
     }
     const Ints edges = as_ints(load_fours(numbers.data(), 0));
-    const Ints columns = as_ints(load_fours(numbers.data(), 4));
-    const Floats rows = load_fours(numbers.data(), 8);
+    const Ints packed = as_ints(load_fours(numbers.data(), 4));
     edge = {spread<0>(edges), spread<1>(edges), spread<2>(edges)};
     x_origin = spread<3>(edges);
-    per_x = {spread<0>(columns), spread<1>(columns), spread<2>(columns)};
-    y_origin = spread<3>(columns);
-    per_y = {spread<0>(as_ints(rows)), spread<1>(as_ints(rows)), spread<2>(as_ints(rows))};
-    inverse_area = spread<3>(rows);
+    slopes = {spread<0>(packed), spread<1>(packed), spread<2>(packed)};
+    y_origin = spread<3>(packed);
+    inverse_area = spread<3>(load_fours(numbers.data(), 8));
     of_quads = &triangles;
-    for (const LaneTriangle* t : triangles) any_large = any_large || t->large != nullptr;
+    for (const LaneTriangle* t : triangles) any_large = any_large || t->is_large;
     if (any_large) load_wide();
   }
 
   SOFTFOCUS_INLINE Weights weights(Ints x, Ints y) const {
     std::array<Floats, 3> l;
-    const Ints dx = x - x_origin;
-    const Ints dy = y - y_origin;
+    const Ints steps = ((x - x_origin) & 0xFFFF) | (y - y_origin) << 16;
 #pragma GCC unroll 3
     for (std::size_t i = 0; i < 3; ++i) {
-      l[i] = to_floats(edge[i] + (dx * per_x[i] + dy * per_y[i]));
+      l[i] = to_floats(edge[i] + (multiply_add_pairs(steps, slopes[i]) << 8));
     }
     if (any_large) weigh_large(x, y, l);
 #pragma GCC unroll 3
@@ -130,8 +130,8 @@ struct BarycentricLanes {
       for (std::size_t quad = 0; quad < kQuads; ++quad) {
         const LaneTriangle& t = *(*of_quads)[quad];
         at_origin[quad] = t.large != nullptr ? t.large->edge[i] : t.edge[i];
-        along_x[quad] = t.large != nullptr ? t.large->per_x[i] : t.per_x[i];
-        along_y[quad] = t.large != nullptr ? t.large->per_y[i] : t.per_y[i];
+        along_x[quad] = t.large != nullptr ? t.large->per_x[i] : slope_x(t.slopes[i]);
+        along_y[quad] = t.large != nullptr ? t.large->per_y[i] : slope_y(t.slopes[i]);
       }
       wide[i] = {wide_repeat(at_origin), wide_repeat(along_x), wide_repeat(along_y)};
     }
@@ -170,14 +170,14 @@ struct BarycentricLanes {
  private:
   SOFTFOCUS_INLINE void load_four(const std::array<VertexRows, 3>& rows_of, std::size_t i,
                                   std::size_t provoking) {
-    load_four_varyings(rows_of[0], i, &first[i]);
-    load_four_varyings(rows_of[1], i, &to_second[i]);
-    load_four_varyings(rows_of[2], i, &to_third[i]);
-#pragma GCC unroll 4
-    for (std::size_t k = i; k < i + 4; ++k) {
-      if constexpr (!kAllPerspective<kinds>) flat[k] = provoking == 0 ? first[k] : to_third[k];
-      to_second[k] -= first[k];
-      to_third[k] -= first[k];
+    // Subtracted before they are spread: one step for four.
+    const Floats at_first = load_fours(rows_of[0].data(), kVertexVaryings + i);
+    const Floats at_third = load_fours(rows_of[2].data(), kVertexVaryings + i);
+    spread_four(at_first, &first[i]);
+    spread_four(load_fours(rows_of[1].data(), kVertexVaryings + i) - at_first, &to_second[i]);
+    spread_four(at_third - at_first, &to_third[i]);
+    if constexpr (!kAllPerspective<kinds>) {
+      spread_four(provoking == 0 ? at_first : at_third, &flat[i]);
     }
   }
   SOFTFOCUS_INLINE Floats blend(std::size_t varying, Floats weight1, Floats weight2) const {

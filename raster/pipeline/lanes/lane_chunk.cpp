@@ -12,18 +12,21 @@ namespace softfocus {
 namespace {
 
 struct TileRange {
-  int x_begin, y_begin, x_end, y_end;
+  int x_first, y_first, x_last, y_last;
 };
 
+// Bounds lie in the target: shifts divide them.
 TileRange tiles_of(const LaneTriangle& t) {
-  return {t.bounds[0] / kTileSize, t.bounds[1] / kTileSize, (t.bounds[2] - 1) / kTileSize + 1,
-          (t.bounds[3] - 1) / kTileSize + 1};
+  constexpr int kTileBits = 6;
+  static_assert(1 << kTileBits == kTileSize);
+  return {t.bounds[0] >> kTileBits, t.bounds[1] >> kTileBits, (t.bounds[2] - 1) >> kTileBits,
+          (t.bounds[3] - 1) >> kTileBits};
 }
 
 template <class Visit>
 void for_each_tile(const TileRange& tiles, const Visit& visit) {
-  for (int y = tiles.y_begin; y < tiles.y_end; ++y) {
-    for (int x = tiles.x_begin; x < tiles.x_end; ++x) visit(x, y);
+  for (int y = tiles.y_first; y <= tiles.y_last; ++y) {
+    for (int x = tiles.x_first; x <= tiles.x_last; ++x) visit(x, y);
   }
 }
 
@@ -82,14 +85,15 @@ LaneTriangle& add_set_up_triangle(LaneChunk& chunk, const TriangleSetup& setup,
   t.y_origin = setup.bounds.y_begin;
   if (!extends_to(functions, kSmallExtent)) {
     t.large = &chunk.large.emplace_back(large_edges(functions, t.x_origin, t.y_origin));
+    t.is_large = true;
   }
   for (std::size_t i = 0; i < 3; ++i) {
     const EdgeFunction& edge = functions.edges[i];
     t.thresholds[i] = edge.owns_centres ? 0 : 1;
     if (t.large != nullptr) continue;
     t.edge[i] = static_cast<std::int32_t>(edge_at(edge, t.x_origin, t.y_origin));
-    t.per_x[i] = static_cast<std::int32_t>(edge.per_x);
-    t.per_y[i] = static_cast<std::int32_t>(edge.per_y);
+    t.slopes[i] =
+        packed_slopes(static_cast<std::int32_t>(edge.per_x), static_cast<std::int32_t>(edge.per_y));
   }
   t.inverse_area = 1.0f / static_cast<float>(functions.area);
   t.depth = depth_fields(setup, provoking, profile);
@@ -108,15 +112,16 @@ void bin_triangles(LaneChunk& chunk, int tiles_x) {
   TileRange all = tiles_of(triangles.front());
   for (const LaneTriangle& t : triangles) {
     const TileRange tiles = tiles_of(t);
-    all = {std::min(all.x_begin, tiles.x_begin), std::min(all.y_begin, tiles.y_begin),
-           std::max(all.x_end, tiles.x_end), std::max(all.y_end, tiles.y_end)};
+    all = {std::min(all.x_first, tiles.x_first), std::min(all.y_first, tiles.y_first),
+           std::max(all.x_last, tiles.x_last), std::max(all.y_last, tiles.y_last)};
   }
   // A counting sort, which keeps a tile's triangles in order.
-  const int columns = all.x_end - all.x_begin;
+  const int columns = all.x_last - all.x_first + 1;
   const auto place = [&](int x, int y) {
-    return static_cast<std::size_t>((y - all.y_begin) * columns + (x - all.x_begin));
+    return static_cast<std::size_t>((y - all.y_first) * columns + (x - all.x_first));
   };
-  std::vector<std::uint32_t> next(static_cast<std::size_t>(columns * (all.y_end - all.y_begin)));
+  std::vector<std::uint32_t> next(
+      static_cast<std::size_t>(columns * (all.y_last - all.y_first + 1)));
   std::uint32_t total = 0;
   for (const LaneTriangle& t : triangles) {
     for_each_tile(tiles_of(t), [&](int x, int y) {
@@ -125,8 +130,8 @@ void bin_triangles(LaneChunk& chunk, int tiles_x) {
     });
   }
   std::uint32_t begin = 0;
-  for (int y = all.y_begin; y < all.y_end; ++y) {
-    for (int x = all.x_begin; x < all.x_end; ++x) {
+  for (int y = all.y_first; y <= all.y_last; ++y) {
+    for (int x = all.x_first; x <= all.x_last; ++x) {
       const std::uint32_t count = std::exchange(next[place(x, y)], begin);
       if (count == 0) continue;
       chunk.tiles.push_back({static_cast<std::uint32_t>(y * tiles_x + x), begin, begin + count});

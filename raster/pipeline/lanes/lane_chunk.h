@@ -64,28 +64,39 @@ struct LargeEdges {
 /// stay below 2 * 2^33 * (2^17 + 8) < 2^53.
 inline constexpr std::int64_t kWideExtent = 1 << 25;
 
-/// A triangle that is drawn, in two lines of a cache.
+/// A triangle that is drawn, in two lines of a cache. The first has all that says where it is seen.
 struct alignas(64) LaneTriangle {
   // Three times four numbers: kernels load four at once.
   /// Edge functions of a small triangle, at the pixel (x_origin, y_origin).
   std::array<std::int32_t, 3> edge;
   std::int32_t x_origin;
-  std::array<std::int32_t, 3> per_x;
+  /// Of a small triangle: their differences from pixel to pixel, over 256, along x in the lower 16
+  /// bits and along y in the upper. Those 16 bits hold kSmallExtent.
+  std::array<std::int32_t, 3> slopes;
   std::int32_t y_origin;
-  std::array<std::int32_t, 3> per_y;
-  float inverse_area;
   /// Of vertex 0, then the others less it; or a plane's at_origin, per_x, per_y.
   std::array<float, 3> depth;
+  float inverse_area;
   std::array<std::int16_t, 4> bounds;     ///< x_begin, y_begin, x_end, y_end
   std::array<std::int8_t, 3> thresholds;  ///< covered where each E >= its threshold: 0 or 1
   bool clockwise;
   bool front_facing;
+  bool is_large;
   std::array<const float*, 3> vertices;
   const LargeEdges* large;  ///< null if it is small
 };
 static_assert(offsetof(LaneTriangle, edge) == 0 &&
-              offsetof(LaneTriangle, per_x) == 4 * sizeof(float) &&
-              offsetof(LaneTriangle, per_y) == 8 * sizeof(float));
+              offsetof(LaneTriangle, slopes) == 4 * sizeof(float) &&
+              offsetof(LaneTriangle, depth) == 8 * sizeof(float));
+
+inline constexpr std::int32_t packed_slopes(std::int32_t per_x, std::int32_t per_y) {
+  return static_cast<std::int32_t>((static_cast<std::uint32_t>(per_x / 256) & 0xFFFFu) |
+                                   static_cast<std::uint32_t>(per_y / 256) << 16);
+}
+inline constexpr std::int32_t slope_x(std::int32_t packed) {
+  return static_cast<std::int16_t>(packed & 0xFFFF) * 256;
+}
+inline constexpr std::int32_t slope_y(std::int32_t packed) { return (packed >> 16) * 256; }
 
 /// The chunk's bins begin <= i < end are of one tile.
 struct TileBins {

@@ -170,29 +170,35 @@ SOFTFOCUS_INLINE std::size_t place_in_tile(const VisibilityTile& tile, int x, in
 template <class Writer>
 SOFTFOCUS_INLINE void rasterize_small(const LaneTriangle& t, const VisibilityTile& tile,
                                       Writer& writer) {
-  const BlockRange range = blocks_of(t, tile);
+  BlockRange range = blocks_of(t, tile);
+  // Parts of a block that lie before the bounds.
+  range.x_begin = std::max<int>(t.bounds[0], tile.area.x_begin) & -kPartColumns;
+  range.y_begin = std::max<int>(t.bounds[1], tile.area.y_begin) & -kPartRows;
   const int dx = range.x_begin - t.x_origin;
   const int dy = range.y_begin - t.y_origin;
+  const Ints steps = ((lane_x() + dx) & 0xFFFF) | (lane_y() + dy) << 16;
   // Edge functions less their thresholds, over the first part of a block in a row; and steps to
   // the next part and row.
   std::array<Ints, 3> row, per_part, per_row;
 #pragma GCC unroll 3
   for (std::size_t i = 0; i < 3; ++i) {
-    row[i] = (lane_x() + dx) * t.per_x[i] + (lane_y() + dy) * t.per_y[i] +
+    row[i] = (multiply_add_pairs(steps, splat(t.slopes[i])) << 8) +
              (t.edge[i] - std::int32_t{t.thresholds[i]});
-    per_part[i] = splat(t.per_x[i] * kPartColumns);
-    per_row[i] = splat(t.per_y[i] * kPartRows);
+    per_part[i] = splat(slope_x(t.slopes[i]) * kPartColumns);
+    per_row[i] = splat(slope_y(t.slopes[i]) * kPartRows);
   }
   const Ints threshold1 = splat(std::int32_t{t.thresholds[1]});
   const Ints threshold2 = splat(std::int32_t{t.thresholds[2]});
   for (int y = range.y_begin; y < range.y_end; y += kPartRows) {
     Ints e0 = row[0], e1 = row[1], e2 = row[2];
+    std::size_t place = place_in_tile(tile, range.x_begin, y);
     for (int x = range.x_begin; x < range.x_end; x += kPartColumns) {
       const Ints signs = e0 | e1 | e2;
       if (sign_bits(signs) != kAllLaneBits) {
-        writer.write(x, y, place_in_tile(tile, x, y), signs >= 0, to_floats(e1 + threshold1),
+        writer.write(x, y, place, signs >= 0, to_floats(e1 + threshold1),
                      to_floats(e2 + threshold2));
       }
+      place = next_part_place(place);
       e0 += per_part[0];
       e1 += per_part[1];
       e2 += per_part[2];
@@ -274,13 +280,9 @@ void rasterize_all(const LaneChunk& chunk, std::span<const Bin> bins, const Draw
   constexpr std::size_t kAhead = 6;
   for (std::size_t i = 0; i < std::min(kAhead, bins.size()); ++i) {
     __builtin_prefetch(&chunk.triangles[bins[i].triangle]);
-    __builtin_prefetch(&chunk.triangles[bins[i].triangle].bounds);
   }
   for (std::size_t i = 0; i < bins.size(); ++i) {
-    const auto* ahead = reinterpret_cast<const char*>(
-        &chunk.triangles[bins[std::min(i + kAhead, bins.size() - 1)].triangle]);
-    __builtin_prefetch(ahead);
-    __builtin_prefetch(ahead + 64);
+    __builtin_prefetch(&chunk.triangles[bins[std::min(i + kAhead, bins.size() - 1)].triangle]);
     const LaneTriangle& t = chunk.triangles[bins[i].triangle];
     tile.triangles.push_back(&t);
     Writer writer{
@@ -289,7 +291,7 @@ void rasterize_all(const LaneChunk& chunk, std::span<const Bin> bins, const Draw
         tile,
         static_cast<std::int32_t>(tile.triangles.size()),
         {profile, splat(t.depth[0]), splat(t.depth[1]), splat(t.depth[2]), splat(t.inverse_area)}};
-    if (t.large == nullptr) {
+    if (!t.is_large) {
       rasterize_small(t, tile, writer);
     } else if (t.large->fits_doubles) {
       rasterize_wide(t, tile, writer);
@@ -341,7 +343,8 @@ void set_unseen(const VisibilityTile& tile, const TileLayer& layer, const std::b
   const int height = tile.area.y_end - tile.area.y_begin;
   for (std::uint32_t place = 0; place < kTilePixels; place += kLanes) {
     const Ints ids = load(&layer.ids[place]);
-    const unsigned unseen = lane_bits(ids == 0);
+    const unsigned unseen = equal_lane_bits(ids, Ints{});
+    if (unseen == 0) continue;
     const int left = tile_x(place), top = tile_y(place);
     if (unseen == kAllLaneBits && left + kPartColumns <= width && top + kPartRows <= height) {
       std::byte* to = layer.texels + static_cast<std::size_t>(top) * layer.stride_bytes +

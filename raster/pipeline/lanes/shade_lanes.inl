@@ -91,6 +91,8 @@ struct FragmentBatch {
       float* from = &inputs[i][static_cast<std::size_t>(last)];
       store(from, select(present, load(from), splat(from[0])));
     }
+    std::int32_t* from = &offsets[static_cast<std::size_t>(last)];
+    store(from, select(present, load(from), splat(from[0])));
   }
 };
 
@@ -103,6 +105,7 @@ static_assert(kMostVisible >> (32 - kQuadBits - kQuadPixels) == 0);
 // Vertices are prefetched this many vectors ahead: a few hundred cycles.
 inline constexpr int kQuadsAhead = 3;
 
+// Triangle after triangle, so that each is loaded once.
 struct SeenQuads {
   std::array<std::uint32_t, kTilePixels + (kQuadsAhead + 1) * kLanes> entries;
   int count = 0;
@@ -112,81 +115,53 @@ SOFTFOCUS_INLINE std::uint32_t triangle_of(std::uint32_t entry) {
   return entry >> (kQuadBits + kQuadPixels);
 }
 
-// The triangles of kQuads entries, each in the lanes of its quad.
-SOFTFOCUS_INLINE Ints triangles_of(const std::uint32_t* entries) {
-  return as_ints(as_bits(repeat_by_four(as_ints(load(entries)))) >> (kQuadBits + kQuadPixels));
-}
-
-SOFTFOCUS_INLINE std::uint32_t quad_entry(const VisibleRun& run, std::int32_t id, int quad,
-                                          unsigned pixels) {
-  const auto triangle = static_cast<std::uint32_t>(id - run.first_id);
-  return (triangle << kQuadBits | static_cast<unsigned>(quad)) << kQuadPixels | pixels;
-}
-
-// Lists the quads of the vector that begins with `quad`. Returns the new count.
-SOFTFOCUS_INLINE int list_quads(const TileLayer& layer, const VisibleRun& run, int quad,
-                                Mask in_area, std::uint32_t* entries, int count) {
-  const std::int32_t* first_id = &layer.ids[static_cast<std::size_t>(quad * kQuadPixels)];
-  const Ints ids = load(first_id);
-  const unsigned seen = lane_bits((ids >= run.first_id) & (ids < run.end_id) & in_area);
-  if (seen == 0) return count;
-  if (seen == kAllLaneBits && all(ids == ids[0])) {
-    store(entries + count,
-          quad_entry(run, ids[0], quad, 0xFu) + as_bits(lane_numbers() << kQuadPixels));
-    return count + kQuads;
-  }
-  // First the triangle that each quad's first pixel shows, then the others.
-  const unsigned as_first = lane_bits(ids == spread<0>(ids)) & seen;
-  for (int i = 0; i < kQuads; ++i) {
-    const unsigned pixels = as_first >> (i * kQuadPixels) & 0xFu;
-    entries[count] = quad_entry(run, first_id[i * kQuadPixels], quad + i, pixels);
-    count += pixels != 0 ? 1 : 0;
-  }
-  for (unsigned rest = seen & ~as_first; rest != 0;) {
-    const int lane = __builtin_ctz(rest);
-    const int i = lane / kQuadPixels;
-    const unsigned same = lane_bits(ids == first_id[lane]) & rest & 0xFu << (i * kQuadPixels);
-    rest &= ~same;
-    entries[count++] = quad_entry(run, first_id[lane], quad + i, same >> (i * kQuadPixels));
-  }
-  return count;
+// The pixels of a part of a block that lie left of a column and above a row of the tile. Part
+// `place` begins with that pixel.
+[[gnu::noinline]] inline unsigned pixels_before(std::size_t place, int x_end, int y_end) {
+  const auto block = static_cast<int>(place / kBlockPixels);
+  const auto part = static_cast<int>(place % kBlockPixels) / kLanes;
+  const int x = block % kTileBlocks * kBlockSize + part * kPartColumns % kBlockSize;
+  const int y = block / kTileBlocks * kBlockSize + part * kPartColumns / kBlockSize * kPartRows;
+  return lane_bits((x + lane_x() < x_end) & (y + lane_y() < y_end));
 }
 
 // Not inlined: one copy for all stages.
 [[gnu::noinline]] inline void list_seen(const VisibilityTile& tile, const TileLayer& layer,
                                         const VisibleRun& run, SeenQuads& seen) {
-  int x_begin = tile.area.x_end, y_begin = tile.area.y_end;
-  int x_end = tile.area.x_begin, y_end = tile.area.y_begin;
+  const int width = tile.area.x_end - tile.area.x_begin;
+  const int height = tile.area.y_end - tile.area.y_begin;
+  const bool is_cut = width < kTileSize || height < kTileSize;
+  std::uint32_t* to = seen.entries.data();
   for (std::int32_t id = run.first_id; id < run.end_id; ++id) {
     const auto& bounds = tile.triangles[static_cast<std::size_t>(id - 1)]->bounds;
-    x_begin = std::min<int>(x_begin, bounds[0]);
-    y_begin = std::min<int>(y_begin, bounds[1]);
-    x_end = std::max<int>(x_end, bounds[2]);
-    y_end = std::max<int>(y_end, bounds[3]);
-  }
-  x_begin = std::max(x_begin, tile.area.x_begin) - tile.area.x_begin;
-  y_begin = std::max(y_begin, tile.area.y_begin) - tile.area.y_begin;
-  x_end = std::min(x_end, tile.area.x_end) - tile.area.x_begin;
-  y_end = std::min(y_end, tile.area.y_end) - tile.area.y_begin;
-
-  int count = 0;
-  for (int y = y_begin & -kBlockSize; y < y_end; y += kBlockSize) {
-    for (int x = x_begin & -kBlockSize; x < x_end; x += kBlockSize) {
-      for (int part = 0; part < kBlockParts; ++part) {
-        const int left = x + part * kPartColumns % kBlockSize;
-        const int top = y + part * kPartColumns / kBlockSize * kPartRows;
-        const Mask in_area = (left + lane_x() < x_end) & (top + lane_y() < y_end);
-        const int quad = static_cast<int>(place_of_pixel(left, top)) / kQuadPixels;
-        count = list_quads(layer, run, quad, in_area, seen.entries.data(), count);
+    const int x_begin = std::max<int>(bounds[0] - tile.area.x_begin, 0) & -kPartColumns;
+    const int y_begin = std::max<int>(bounds[1] - tile.area.y_begin, 0) & -kPartRows;
+    const int x_end = std::min<int>(bounds[2] - tile.area.x_begin, width);
+    const int y_end = std::min<int>(bounds[3] - tile.area.y_begin, height);
+    const auto triangle = static_cast<std::uint32_t>(id - run.first_id) << kQuadBits;
+    const Ints own = splat(id);
+    for (int y = y_begin; y < y_end; y += kPartRows) {
+      const std::size_t last = place_of_pixel((x_end - 1) & -kPartColumns, y);
+      for (std::size_t place = place_of_pixel(x_begin, y); place <= last;
+           place = next_part_place(place)) {
+        unsigned pixels = equal_lane_bits(load(&layer.ids[place]), own);
+        if (pixels == 0) continue;
+        if (is_cut) pixels &= pixels_before(place, width, height);
+        const auto quad = triangle | static_cast<std::uint32_t>(place / kQuadPixels);
+#pragma GCC unroll 4
+        for (unsigned i = 0; i < kQuads; ++i) {
+          const unsigned of_quad = pixels >> (i * kQuadPixels) & 0xFu;
+          *to = (quad + i) << kQuadPixels | of_quad;
+          to += of_quad != 0 ? 1 : 0;
+        }
       }
     }
   }
-  seen.count = count;
+  seen.count = static_cast<int>(to - seen.entries.data());
   // Quads without a pixel fill up the last vector and those that are prefetched.
   if (seen.count == 0) return;
-  const auto end = static_cast<std::size_t>(seen.count);
   for (std::size_t i = 0; i < (kQuadsAhead + 1) * kQuads; ++i) {
-    seen.entries[end + i] = seen.entries[end - 1] >> kQuadPixels << kQuadPixels;
+    to[i] = to[-1] >> kQuadPixels << kQuadPixels;
   }
 }
 
@@ -200,21 +175,48 @@ SOFTFOCUS_INLINE void fetch_vertices(const LaneTriangle* const* triangles,
   }
 }
 
+// Stores kLanes colours, each at its offset.
 template <HalfRounding rounding>
-SOFTFOCUS_INLINE HalfTexels to_half_texels(const std::array<Floats, 4>& colour) {
-  return {float_to_half<rounding>(colour[0]), float_to_half<rounding>(colour[1]),
-          float_to_half<rounding>(colour[2]), float_to_half<rounding>(colour[3])};
+SOFTFOCUS_INLINE void store_colours(const std::array<Floats, 4>& colour, std::byte* first,
+                                    const std::int32_t* offsets) {
+  constexpr std::size_t kTexelBytes = sizeof(std::uint64_t);
+#if SOFTFOCUS_LANES >= 8
+  if constexpr (rounding != HalfRounding::swiftshader) {
+    // Texels are put together before they are converted: half as many steps.
+    std::array<Floats, 4> texels;
+#pragma GCC unroll 4
+    for (std::size_t i = 0; i < 4; ++i) texels[i] = with_plain_nan(colour[i]);
+    transpose_fours(texels[0], texels[1], texels[2], texels[3]);
+#pragma GCC unroll 4
+    for (std::size_t i = 0; i < 4; ++i) {
+      const HalfVector halves = to_halves<rounding>(texels[i]);
+#pragma GCC unroll 4
+      for (std::size_t four = 0; four < kLanes / 4; ++four) {
+        const std::uint64_t texel = halves[four];
+        std::memcpy(first + offsets[4 * four + i], &texel, kTexelBytes);
+      }
+    }
+    return;
+  }
+#endif
+  alignas(64) std::array<std::uint16_t, 4 * kLanes> halves;
+  store_half_texels(halves.data(),
+                    {float_to_half<rounding>(colour[0]), float_to_half<rounding>(colour[1]),
+                     float_to_half<rounding>(colour[2]), float_to_half<rounding>(colour[3])});
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    std::memcpy(first + offsets[lane], &halves[4 * lane], kTexelBytes);
+  }
 }
 
-SOFTFOCUS_INLINE HalfTexels to_half_texels(const std::array<Floats, 4>& colour,
-                                           HalfRounding rounding) {
+SOFTFOCUS_INLINE void store_colours(const std::array<Floats, 4>& colour, HalfRounding rounding,
+                                    std::byte* first, const std::int32_t* offsets) {
   using enum HalfRounding;
   switch (rounding) {
-    case nearest_even: return to_half_texels<nearest_even>(colour);
-    case toward_zero: return to_half_texels<toward_zero>(colour);
+    case nearest_even: return store_colours<nearest_even>(colour, first, offsets);
+    case toward_zero: return store_colours<toward_zero>(colour, first, offsets);
     case swiftshader: break;
   }
-  return to_half_texels<swiftshader>(colour);
+  store_colours<swiftshader>(colour, first, offsets);
 }
 
 // The second step. Not inlined: all interpolators share it.
@@ -228,15 +230,8 @@ template <class Stage>
   stage.shade(batch, colours.data());
   std::byte* first = tile.layer(job.layer).texels;
   for (int vector = 0; vector < batch.vectors(); ++vector) {
-    alignas(64) std::array<std::uint16_t, 4 * kLanes> halves;
-    store_half_texels(halves.data(), to_half_texels(colours[static_cast<std::size_t>(vector)],
-                                                    job.profile->half_store));
-    const int begin = vector * kLanes;
-    const int count = std::min(batch.count - begin, kLanes);
-    for (int lane = 0; lane < count; ++lane) {
-      std::memcpy(first + batch.offsets[static_cast<std::size_t>(begin + lane)],
-                  &halves[static_cast<std::size_t>(4 * lane)], sizeof(std::uint64_t));
-    }
+    store_colours(colours[static_cast<std::size_t>(vector)], job.profile->half_store, first,
+                  &batch.offsets[static_cast<std::size_t>(vector * kLanes)]);
   }
   batch.count = 0;
 }
@@ -271,20 +266,21 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
   Interpolator interpolator{};
   const LoadJob load_job = load_job_of(stage, job);
   QuadTriangles of_quads{};
-  Ints loaded = splat(-1);
+  std::uint32_t loaded = ~0u;  // the triangle of all quads, if it is one
   for (int i = 0; i < seen.count; i += kQuads) {
     const std::uint32_t* entries = &seen.entries[static_cast<std::size_t>(i)];
     const Ints entry = repeat_by_four(as_ints(load(entries)));
-    const Ints triangle = triangles_of(entries);
     const std::uint32_t* ahead = entries + kQuadsAhead * kQuads;
-    if (!all(triangles_of(ahead) == triangles_of(ahead - kQuads))) fetch_vertices(triangles, ahead);
-    if (!all(triangle == loaded)) {
+    if (triangle_of(ahead[kQuads - 1]) != triangle_of(ahead[-1])) fetch_vertices(triangles, ahead);
+    const std::uint32_t first_triangle = triangle_of(entries[0]);
+    const bool is_one = first_triangle == triangle_of(entries[kQuads - 1]);
+    if (!is_one || first_triangle != loaded) {
 #pragma GCC unroll 4
       for (std::size_t quad = 0; quad < kQuads; ++quad) {
         of_quads[quad] = triangles[triangle_of(entries[quad])];
       }
       interpolator.load(of_quads, load_job);
-      loaded = triangle;
+      loaded = is_one ? first_triangle : ~0u;
     }
     const Ints quad = entry >> kQuadPixels;
     const Ints block = quad >> 2;

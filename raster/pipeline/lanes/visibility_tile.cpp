@@ -40,11 +40,21 @@ void move_back(const VisibilityTile& tile, std::size_t number) {
   });
 }
 
+// By lines of a cache: compilers write a loop of single stores.
+template <class Number>
+void fill(std::array<Number, kTilePixels>& of_tile, Number value) {
+  std::array<Number, 16> line;
+  line.fill(value);
+  for (std::size_t i = 0; i < kTilePixels; i += line.size()) {
+    std::memcpy(&of_tile[i], line.data(), sizeof line);
+  }
+}
+
 // No triangle yet: what the layers show is to be cleared, or to be kept.
 void show_none(VisibilityTile& tile, bool cleared) {
   for (std::size_t i = 0; i < tile.layers; ++i) {
     const bool keeps = tile.layers > 1 && !cleared;
-    tile.layer(i).ids.fill(keeps ? -1 - static_cast<std::int32_t>(i) : 0);
+    fill(tile.layer(i).ids, keeps ? -1 - static_cast<std::int32_t>(i) : 0);
   }
   tile.triangles.clear();
   tile.runs.clear();
@@ -63,7 +73,7 @@ void begin_tile(VisibilityTile& tile, const Rectangle& area, const RenderTargets
   for (std::size_t i = 0; i < tile.layers; ++i) {
     TileLayer& layer = tile.layer(i);
     if (clear_depth) {
-      layer.depth.fill(*clear_depth);
+      fill(layer.depth, *clear_depth);
       continue;
     }
     const Image& from = *layer_target(targets, i).depth;
