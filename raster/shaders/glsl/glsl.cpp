@@ -149,7 +149,9 @@ std::string text_for_drivers(const GlslText& text, const std::string& source) {
   std::string version = text.version.substr(std::min(text.version.find('#'), text.version.size()));
   constexpr std::string_view kProfile = " compatibility";
   const std::size_t at = version.find(kProfile);
-  const bool is_said = source.find(kProfile) != source.npos;
+  const std::size_t line = std::min(source.find("#version"), source.size());
+  const bool is_said =
+      source.substr(line, source.find('\n', line) - line).find(kProfile) != source.npos;
   if (at != version.npos && !is_said) version.erase(at, kProfile.size());
   return version + extensions + rest;
 }
