@@ -201,10 +201,12 @@ TEST_CASE("crosscheck --pipeline: a driver's inputs are the place in the picture
              "in float f;\nout vec4 c;\nvoid main() {\n"
              "  c = texture(picture, m[1].xy * a[1].wx + n[1].xy) + vec4(m[2], f) + a[0];\n}\n");
   write_file(directory.file("inputs.toml"), "[[pass]]\nshader = \"inputs.frag\"\n");
+  // Of a power of two, where a driver interpolates to the same bits.
   for (const char* driver : {"llvmpipe", "emulated"}) {
     if (!has_driver(driver)) continue;
-    const ProgramRun run = run_program({"crosscheck", "--driver", driver, "--pipeline",
-                                        directory.file("inputs.toml"), "--quick", "--json"});
+    const ProgramRun run =
+        run_program({"crosscheck", "--driver", driver, "--pipeline", directory.file("inputs.toml"),
+                     "--case", "*64x64*", "--json"});
     CAPTURE(driver);
     CAPTURE(run.out);
     CHECK(run.status == 0);
