@@ -26,6 +26,7 @@ using namespace softfocus;
 struct softfocus_shader {
   UserShader shader{};
   std::vector<std::uint32_t> words{};              // of the uniforms
+  std::vector<bool> is_late{};                     // of the words; empty: none
   std::shared_ptr<const ShaderProgram> program{};  // with these words; made when it is needed
   bool is_linked = false;
   std::vector<Texture> textures{};        // by their numbers
@@ -80,8 +81,8 @@ std::vector<std::uint32_t> words_of(const softfocus_shader_source& source) {
 
 std::shared_ptr<const ShaderProgram> program_of(softfocus_shader& shader) {
   if (shader.program == nullptr) {
-    shader.program =
-        std::make_shared<const ShaderProgram>(compile_shader(shader.shader, shader.words));
+    shader.program = std::make_shared<const ShaderProgram>(
+        compile_shader(shader.shader, shader.words, shader.is_late));
   }
   return shader.program;
 }
@@ -207,8 +208,21 @@ int softfocus_set_uniform(softfocus_context* context, softfocus_shader* shader, 
     for (std::size_t i = 0; i < count; ++i) {
       words[uniform.first + element * each + i] = word_of(uniform, i, numbers[i]);
     }
-    if (words == to.words) return;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+      const bool is_late = !to.is_late.empty() && to.is_late[i];
+      if (words[i] != to.words[i] && !is_late) to.program.reset();
+    }
     to.words = std::move(words);
+  });
+}
+
+int softfocus_make_uniform_late(softfocus_context* context, softfocus_shader* shader,
+                                const char* name) {
+  return guarded(context, [&](ThreadPool&) {
+    softfocus_shader& to = given(shader);
+    const ShaderUniform& uniform = named(to, name, false).uniform;
+    to.is_late.resize(to.words.size());
+    std::fill_n(to.is_late.begin() + uniform.first, uniform.words, true);
     to.program.reset();
   });
 }
@@ -247,7 +261,8 @@ int softfocus_run_shader(softfocus_context* context, softfocus_shader* shader,
                {.textures = textures,
                 .targets = read.targets,
                 .profile = read.profile,
-                .budget = read.budget},
+                .budget = read.budget,
+                .uniforms = of.words},
                pool);
   });
 }
@@ -259,6 +274,8 @@ int softfocus_link_shaders(softfocus_context* context, softfocus_shader* vertex,
     link_shaders(first.shader, second.shader);
     first.words = first.shader.uniforms.words;
     second.words = second.shader.uniforms.words;
+    first.is_late.clear();
+    second.is_late.clear();
     first.is_linked = second.is_linked = true;
     first.program.reset();
     second.program.reset();
@@ -296,6 +313,8 @@ int softfocus_draw_shaders(softfocus_context* context, softfocus_shader* vertex,
     draw_shaders(render, state, read_from.indices, read_from.count,
                  {.vertex = program_of(first),
                   .fragment = program_of(second),
+                  .vertex_uniforms = first.words,
+                  .fragment_uniforms = second.words,
                   .attributes = read_from.attributes,
                   .vertex_textures = bound_textures(first),
                   .fragment_textures = bound_textures(second),

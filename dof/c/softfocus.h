@@ -305,6 +305,12 @@ SOFTFOCUS_API const char* softfocus_uniform_name(const softfocus_shader* shader,
 SOFTFOCUS_API int softfocus_set_uniform(softfocus_context* context, softfocus_shader* shader,
                                         const char* name, const double* numbers, size_t count);
 
+/* From now on runs are given the uniform, and setting it compiles nothing: for one that changes
+ * from run to run of small pictures. The program is somewhat slower, and its bits are the same. An
+ * array is late as a whole. */
+SOFTFOCUS_API int softfocus_make_uniform_late(softfocus_context* context, softfocus_shader* shader,
+                                              const char* name);
+
 /* Sets a texture: copies the texels. One that is not set reads as 0. `sampler` may be null. */
 SOFTFOCUS_API int softfocus_set_texture(softfocus_context* context, softfocus_shader* shader,
                                         const char* name, const softfocus_texels* texels,

@@ -281,8 +281,10 @@ std::vector<UsualUniform> usual_uniforms() {
     all.push_back({name, {of(pass_width), of(pass_height), constant_expression(1.0)}});
   }
   all.push_back({"iChannelResolution", {of(width), of(height), constant_expression(1.0)}});
-  all.push_back(
-      {"OutputSize", {of(pass_width), of(pass_height), one_by(pass_width), one_by(pass_height)}});
+  for (const std::string_view name : {"OutputSize", "FinalViewportSize"}) {
+    all.push_back(
+        {name, {of(pass_width), of(pass_height), one_by(pass_width), one_by(pass_height)}});
+  }
   for (const std::string_view name : {"InputSize", "TextureSize", "SourceSize", "OriginalSize"}) {
     all.push_back({name, {of(width), of(height), one_by(width), one_by(height)}});
   }
@@ -294,7 +296,8 @@ std::vector<UsualUniform> usual_uniforms() {
   for (const std::string_view name : {"iTime", "time", "u_time", "uTime"}) {
     all.push_back({name, {of(seconds)}});
   }
-  for (const std::string_view name : {"iFrame", "u_frame"}) all.push_back({name, {of(frame)}});
+  for (const std::string_view name : {"iFrame", "u_frame", "FrameCount"})
+    all.push_back({name, {of(frame)}});
   all.push_back({"cameraNear", {of(near_m)}});
   all.push_back({"cameraFar", {of(far_m)}});
   return all;

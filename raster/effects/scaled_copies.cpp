@@ -8,7 +8,6 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
-#include <glm/vec4.hpp>
 
 #include "raster/images/texel.h"
 #include "raster/passes/fullscreen_pass.h"
@@ -128,41 +127,9 @@ struct SumRows {
 
 }  // namespace
 
-void scaled_copies_oracle(const CopiesPass& pass, const ConstImageView& source,
-                          const ConstImageView& own, const ImageView& result,
-                          const Profile& profile, ThreadPool& pool) {
-  assert(fit(source, own, result));
-  const int width = result.width, height = result.height;
-  const auto light = [&](int x, int y, int channel) {
-    const bool is_inside = x >= 0 && x < width && y >= 0 && y < height;
-    return is_inside ? load_texel<Format::rgba16f>(source, x, y)[channel] : 0.0f;
-  };
-  fullscreen_pass<Format::rgba16f>(result, profile, pool, [&](int x, int y) {
-    glm::vec4 sum = load_texel<Format::rgba16f>(own, x, y);
-    for (const ScaledCopy& copy : pass.copies) {
-      for (int channel = 0; channel < 3; ++channel) {
-        const Place column = place_of(x, copy.scale[channel], pass.anchor.x, pass.fade.x, width);
-        const Place line = place_of(y, copy.scale[channel], pass.anchor.y, pass.fade.y, height);
-        const auto between = [&](int at_y) {
-          const float a = light(column.first, at_y, channel);
-          return a + column.share * (light(column.first + 1, at_y, channel) - a);
-        };
-        const float above = between(line.first);
-        const float seen = above + line.share * (between(line.first + 1) - above);
-        const float kept = column.fade * line.fade;
-        sum[channel] = sum[channel] + copy.colour[channel] * kept * seen;
-      }
-    }
-    return sum;
-  });
-}
-
 void scaled_copies(const CopiesPass& pass, const ConstImageView& source, const ConstImageView& own,
                    const ImageView& result, const Profile& profile, ThreadPool& pool) {
   assert(fit(source, own, result));
-  if (pool.isa() == Isa::scalar) {
-    return scaled_copies_oracle(pass, source, own, result, profile, pool);
-  }
   const int width = result.width, height = result.height;
   const Columns columns = columns_of(pass, width);
   const std::array channels{Channel{source, 0}, Channel{source, 1}, Channel{source, 2}};

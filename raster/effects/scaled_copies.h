@@ -33,9 +33,4 @@ struct CopiesPass {
 void scaled_copies(const CopiesPass& pass, const ConstImageView& source, const ConstImageView& own,
                    const ImageView& result, const Profile& profile, ThreadPool& pool);
 
-/// The oracle of scaled_copies(), and its scalar form: pixel by pixel. Equal to the bit.
-void scaled_copies_oracle(const CopiesPass& pass, const ConstImageView& source,
-                          const ConstImageView& own, const ImageView& result,
-                          const Profile& profile, ThreadPool& pool);
-
 }  // namespace softfocus

@@ -5,11 +5,9 @@
 
 #include <algorithm>
 #include <cassert>
-#include <glm/vec4.hpp>
 #include <vector>
 
 #include "raster/images/texel.h"
-#include "raster/passes/fullscreen_pass.h"
 #include "raster/passes/kernel.h"
 #include "raster/threads/loops.h"
 
@@ -42,11 +40,6 @@ constexpr int kBandRows = 32;
 bool fit(const ConstImageView& source, const ImageView& result) {
   return source.format == Format::rgba16f && result.format == Format::rgba16f &&
          source.width == result.width && source.height == result.height;
-}
-
-float likeness(float square) {
-  const float rest = 1.0f - square;
-  return rest > 0.0f ? rest * rest : 0.0f;
 }
 
 /// `count` pixels from column `first` on, which may lie beyond the row, in planes.
@@ -114,45 +107,9 @@ float bilateral_colour_factor(const BilateralSettings& settings) {
   return tolerance > 0.0f ? 1.0f / (tolerance * tolerance) : 0.0f;
 }
 
-void bilateral_oracle(const BilateralSettings& settings, const ConstImageView& source,
-                      const ImageView& result, const Profile& profile, ThreadPool& pool) {
-  assert(fit(source, result));
-  const std::vector<float> weights = gaussian_weights(settings.sigma_px);
-  const int reach = static_cast<int>(weights.size() / 2);
-  const float factor = bilateral_colour_factor(settings);
-  fullscreen_pass<Format::rgba16f>(result, profile, pool, [&](int x, int y) {
-    const glm::vec4 own = load_texel<Format::rgba16f>(source, x, y);
-    const float own_depth = compared_depth(own.w);
-    const float depth_scale = settings.depth_tolerance * own_depth;
-    glm::vec4 sum{0.0f};
-    float sum_of_weights = 0.0f;
-    for (int j = -reach; j <= reach; ++j) {
-      for (int i = -reach; i <= reach; ++i) {
-        const glm::vec4 other =
-            load_texel<Format::rgba16f>(source, std::clamp(x + i, 0, source.width - 1),
-                                        std::clamp(y + j, 0, source.height - 1));
-        float weight = weights[static_cast<std::size_t>(reach + i)] *
-                       weights[static_cast<std::size_t>(reach + j)];
-        if (i != 0 || j != 0) {
-          const glm::vec4 off = other - own;
-          weight *= likeness((off.x * off.x + off.y * off.y + off.z * off.z) * factor);
-          if (settings.depth_tolerance > 0.0f) {
-            const float ratio = (compared_depth(other.w) - own_depth) / depth_scale;
-            weight *= likeness(ratio * ratio);
-          }
-        }
-        sum += weight * other;
-        sum_of_weights += weight;
-      }
-    }
-    return glm::vec4{sum.x / sum_of_weights, sum.y / sum_of_weights, sum.z / sum_of_weights, own.w};
-  });
-}
-
 void bilateral(const BilateralSettings& settings, const ConstImageView& source,
                const ImageView& result, const Profile& profile, ThreadPool& pool) {
   assert(fit(source, result));
-  if (pool.isa() == Isa::scalar) return bilateral_oracle(settings, source, result, profile, pool);
   const std::vector<float> weights = gaussian_weights(settings.sigma_px);
   const BilateralWork work{settings, weights, source, result, profile, pool.isa()};
   for_each_band_with<SplitRows>(

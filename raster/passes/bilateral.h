@@ -35,10 +35,6 @@ struct BilateralSettings {
 void bilateral(const BilateralSettings& settings, const ConstImageView& source,
                const ImageView& result, const Profile& profile, ThreadPool& pool);
 
-/// The oracle of bilateral(), and its scalar form: pixel by pixel. Equal to the bit.
-void bilateral_oracle(const BilateralSettings& settings, const ConstImageView& source,
-                      const ImageView& result, const Profile& profile, ThreadPool& pool);
-
 /// f of the formula; 0 without a tolerance. The shader gets it so.
 float bilateral_colour_factor(const BilateralSettings& settings);
 

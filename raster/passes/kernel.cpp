@@ -150,30 +150,9 @@ Kernel square_kernel(const std::vector<float>& weights) {
   return kernel;
 }
 
-void convolve_oracle(const Kernel& kernel, const ConstImageView& source, const ImageView& result,
-                     const Profile& profile, ThreadPool& pool) {
-  assert(fit(kernel, source, result));
-  const Margins margins = margins_of(kernel, source, result);
-  fullscreen_pass<Format::rgba16f>(result, profile, pool, [&](int x, int y) {
-    const int centre_x = x + margins.guard_x, centre_y = y + margins.guard_y;
-    glm::vec4 sum{0.0f};
-    const float* weight = kernel.weights.data();
-    for (int j = -margins.reach_y; j <= margins.reach_y; ++j) {
-      for (int i = -margins.reach_x; i <= margins.reach_x; ++i) {
-        sum += *weight++ *
-               load_texel<Format::rgba16f>(source, std::clamp(centre_x + i, 0, source.width - 1),
-                                           std::clamp(centre_y + j, 0, source.height - 1));
-      }
-    }
-    sum.w = load_texel<Format::rgba16f>(source, centre_x, centre_y).w;
-    return sum;
-  });
-}
-
 void convolve(const Kernel& kernel, const ConstImageView& source, const ImageView& result,
               const Profile& profile, ThreadPool& pool) {
   assert(fit(kernel, source, result));
-  if (pool.isa() == Isa::scalar) return convolve_oracle(kernel, source, result, profile, pool);
   for_each_band_with<RowRing>(
       pool, result.height, kKernelRows, [&](int first, int end, auto& ring) {
         convolve_band(kernel, source, result, profile, first, end, ring, pool.isa());

@@ -55,10 +55,6 @@ Kernel square_kernel(const std::vector<float>& weights);
 void convolve(const Kernel& kernel, const ConstImageView& source, const ImageView& result,
               const Profile& profile, ThreadPool& pool);
 
-/// The oracle of convolve(), and its scalar form: pixel by pixel. Equal to the bit.
-void convolve_oracle(const Kernel& kernel, const ConstImageView& source, const ImageView& result,
-                     const Profile& profile, ThreadPool& pool);
-
 /// The mean of 3x3 pixels by four bilinear reads of a texture in place of nine: between the four
 /// pixels at the upper left (4/9), between two at the right (2/9) and two below (2/9), and the one
 /// at the lower right (1/9). The first level is RGBA16F of the result's size; its edges repeat.

@@ -6,13 +6,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cstring>
-#include <glm/vec4.hpp>
 #include <utility>
 #include <vector>
 
 #include "raster/images/image.h"
-#include "raster/images/texel.h"
-#include "raster/passes/fullscreen_pass.h"
 #include "raster/passes/row_sums.h"
 #include "raster/threads/loops.h"
 
@@ -177,26 +174,9 @@ void for_bands(int height, ThreadPool& pool, const Band& band) {
 
 }  // namespace
 
-void downsample_oracle(const ConstImageView& source, const ImageView& result,
-                       const Profile& profile, ThreadPool& pool) {
-  assert(fit_down(source, result));
-  fullscreen_pass<Format::rgba16f>(result, profile, pool, [&](int x, int y) {
-    glm::vec4 sum{0.0f};
-    for (int j = 0; j < 6; ++j) {
-      for (const int i : kDownColumns) {
-        sum += down_weight(i, j) *
-               load_texel<Format::rgba16f>(source, std::clamp(2 * x - 2 + i, 0, source.width - 1),
-                                           std::clamp(2 * y - 2 + j, 0, source.height - 1));
-      }
-    }
-    return sum;
-  });
-}
-
 void downsample(const ConstImageView& source, const ImageView& result, const Profile& profile,
                 ThreadPool& pool) {
   assert(fit_down(source, result));
-  if (pool.isa() == Isa::scalar) return downsample_oracle(source, result, profile, pool);
   for_bands(result.height, pool, [&](int first, int end, PyramidRows& rows) {
     const auto row_of = [&](int y) {
       return row<std::uint16_t>(source, std::clamp(y, 0, source.height - 1));
@@ -224,31 +204,9 @@ void downsample_made(const MadeRows& source, const ImageView& result, const Prof
   });
 }
 
-void upsample_oracle(const ConstImageView& source, const ConstImageView& own, const Upsampling& how,
-                     const ImageView& result, const Profile& profile, ThreadPool& pool) {
-  assert(fit_up(source, own, result));
-  const int tap = first_tap(how.widening);
-  fullscreen_pass<Format::rgba16f>(result, profile, pool, [&](int x, int y) {
-    const bool odd_x = x % 2 != 0, odd_y = y % 2 != 0;
-    glm::vec4 sum{0.0f};
-    for (int j = tap; j < 4 - tap; ++j) {
-      for (int i = tap; i < 4 - tap; ++i) {
-        sum += up_weight(how.widening, i, odd_x) * up_weight(how.widening, j, odd_y) *
-               load_texel<Format::rgba16f>(
-                   source, std::clamp(x / 2 - 2 + (odd_x ? 1 : 0) + i, 0, source.width - 1),
-                   std::clamp(y / 2 - 2 + (odd_y ? 1 : 0) + j, 0, source.height - 1));
-      }
-    }
-    const glm::vec4 here = load_texel<Format::rgba16f>(own, x, y);
-    if (how.alone) return glm::vec4{sum.x, sum.y, sum.z, here.w};
-    return here + how.share * (sum - here);
-  });
-}
-
 void upsample(const ConstImageView& source, const ConstImageView& own, const Upsampling& how,
               const ImageView& result, const Profile& profile, ThreadPool& pool) {
   assert(fit_up(source, own, result));
-  if (pool.isa() == Isa::scalar) return upsample_oracle(source, own, how, result, profile, pool);
   const UpsampleWork work{source, result.width, how, profile, pool.isa()};
   for_bands(result.height, pool, [&](int first, int end, PyramidRows& rows) {
     upsample_band(

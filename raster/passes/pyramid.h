@@ -72,10 +72,4 @@ void upsample_made(const ConstImageView& source, const MadeRows& own, const Upsa
 void dual_filter(int levels, Widening widening, const ConstImageView& picture,
                  const ImageView& result, const Profile& profile, ThreadPool& pool);
 
-/// The oracles, and the scalar forms: pixel by pixel. Equal to the bit.
-void downsample_oracle(const ConstImageView& source, const ImageView& result,
-                       const Profile& profile, ThreadPool& pool);
-void upsample_oracle(const ConstImageView& source, const ConstImageView& own, const Upsampling& how,
-                     const ImageView& result, const Profile& profile, ThreadPool& pool);
-
 }  // namespace softfocus

@@ -503,9 +503,8 @@ Scalars Lowering::sample_result(Call& call, const SpirvInstruction& in, ShaderRe
   if (of->is_arrayed && of->dim == SpirvDim::cube) {
     refuse("samplerCubeArray is not supported; samplerCube and sampler2DArray are");
   }
-  if (of->is_arrayed && of->dim != SpirvDim::two) {
-    refuse("sampler1DArray is not supported; sampler2DArray is");
-  }
+  // Read as a sampler2DArray, in the middle of its rows.
+  const bool is_line_array = of->is_arrayed && of->dim == SpirvDim::one;
 
   ShaderSample sample{.dim = of->dim,
                       .shape = texture_shape(*of),
@@ -516,7 +515,7 @@ Scalars Lowering::sample_result(Call& call, const SpirvInstruction& in, ShaderRe
   const std::uint32_t places = (of->dim == SpirvDim::one                                  ? 1u
                                 : of->dim == SpirvDim::three || of->dim == SpirvDim::cube ? 3u
                                                                                           : 2u) +
-                               (of->is_arrayed ? 1u : 0u);
+                               (of->is_arrayed && in.op != image_query_lod ? 1u : 0u);
   const bool has_place =
       in.op != image_query_size_lod && in.op != image_query_size && in.op != image_query_levels;
   std::size_t next = 1;
@@ -533,6 +532,10 @@ Scalars Lowering::sample_result(Call& call, const SpirvInstruction& in, ShaderRe
       }
     }
     std::copy_n(at.begin(), places, sample.at.begin());
+    if (is_line_array && places == 2) {
+      sample.at[2] = sample.at[1];
+      sample.at[1] = in.op == image_fetch ? whole(0) : this->constant(0.5f);
+    }
     const bool compares =
         in.op == image_sample_dref_implicit_lod || in.op == image_sample_dref_explicit_lod ||
         in.op == image_sample_proj_dref_implicit_lod ||
@@ -542,7 +545,7 @@ Scalars Lowering::sample_result(Call& call, const SpirvInstruction& in, ShaderRe
       if (projects) sample.compared = make(to, ShaderOp::divide, sample.compared, at[places]);
     }
   }
-  std::uint32_t results = scalars(in.type);
+  const std::uint32_t results = scalars(in.type);
   switch (in.op) {
     case image_fetch: sample.kind = SampleKind::fetch; break;
     case image_gather:
@@ -563,6 +566,7 @@ Scalars Lowering::sample_result(Call& call, const SpirvInstruction& in, ShaderRe
     case image_sample_proj_dref_explicit_lod: sample.kind = SampleKind::level; break;
     default: sample.kind = SampleKind::implicit; break;
   }
+  Scalars offsets;  // of a gather, for each of its texels
   if (next < w.size() && has_place) {
     const std::uint32_t bits = w[next++];
     if ((bits & kImageBias) != 0) sample.more[0] = scalar(call, word(w, next++));
@@ -581,7 +585,7 @@ Scalars Lowering::sample_result(Call& call, const SpirvInstruction& in, ShaderRe
       const Scalars offset = value(call, word(w, next++));
       std::copy_n(offset.begin(), std::min<std::size_t>(3, offset.size()), sample.offset.begin());
     }
-    if ((bits & kImageConstOffsets) != 0) refuse("textureGatherOffsets is not supported");
+    if ((bits & kImageConstOffsets) != 0) offsets = value(call, word(w, next++));
   }
   if (sample.kind == SampleKind::fetch && sample.more[0] == kNoValue) sample.more[0] = whole(0);
   if (sample.kind == SampleKind::implicit || sample.kind == SampleKind::query_lod) {
@@ -590,15 +594,31 @@ Scalars Lowering::sample_result(Call& call, const SpirvInstruction& in, ShaderRe
     sample.more[1] = sample.more[0];
   }
   if (results > 4) damaged("a texture gives more than four numbers");
-  ShaderInstruction& made = add(to, ShaderOp::sample);
-  made.place = static_cast<std::uint32_t>(tree_.samples.size());
-  Scalars values;
-  for (std::uint32_t i = 0; i < results; ++i) {
-    sample.to[i] = tree_.new_value();
-    values.push_back(sample.to[i]);
+  const auto sampled = [&](std::uint32_t count) {
+    ShaderInstruction& made = add(to, ShaderOp::sample);
+    made.place = static_cast<std::uint32_t>(tree_.samples.size());
+    Scalars values;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      sample.to[i] = tree_.new_value();
+      values.push_back(sample.to[i]);
+    }
+    tree_.samples.push_back(sample);
+    return values;
+  };
+  if (!offsets.empty()) {
+    if (sample.kind != SampleKind::gather || offsets.size() != 8) damaged("offsets are not four");
+    Scalars values;
+    for (std::size_t i = 0; i < results; ++i) {
+      std::copy_n(offsets.begin() + static_cast<std::ptrdiff_t>(2 * i), 2, sample.offset.begin());
+      values.push_back(sampled(4)[3]);  // the upper left of four
+    }
+    return values;
   }
-  tree_.samples.push_back(sample);
-  return values;
+  if (is_line_array && sample.kind == SampleKind::size && results == 2) {
+    const Scalars size = sampled(3);
+    return {size[0], size[2]};
+  }
+  return sampled(results);
 }
 
 }  // namespace softfocus

@@ -42,7 +42,8 @@ class Run {
                   .profile = pass.profile,
                   .budget = pass.budget,
                   .lanes = pass.lanes,
-                  .row_lanes = width_of(pass) * (program.has_derivatives ? 2 : 1)},
+                  .row_lanes = width_of(pass) * (program.has_derivatives ? 2 : 1),
+                  .uniforms = pass.uniforms},
                  pool.isa()),
         lanes_(batches_.lanes()) {
     for (const ImageView& target : pass.targets) {

@@ -62,6 +62,7 @@ struct ShaderPass {
   /// Turns of loops that a batch of pixels may take.
   std::uint64_t budget = std::uint64_t{1} << 24;
   int lanes = 0;  ///< that run together, for tests; 0: as many as are fastest
+  std::span<const std::uint32_t> uniforms{};  ///< all words, for a program with late ones
 };
 
 /// Runs the shader at every pixel. gl_FragCoord is (x + 1/2, y + 1/2, 1/2, 1) of column x and row

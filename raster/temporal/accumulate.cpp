@@ -5,14 +5,9 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
-#include <glm/vec3.hpp>
-#include <glm/vec4.hpp>
 #include <vector>
 
 #include "raster/images/image.h"
-#include "raster/images/texel.h"
-#include "raster/passes/fullscreen_pass.h"
 #include "raster/temporal/split_texels.h"
 #include "raster/threads/loops.h"
 
@@ -54,63 +49,6 @@ constexpr int kAccumulatePlanes = 7;
   };
   return fits(now, Format::rgba16f) && fits(old, Format::rgba16f) &&
          fits(result, Format::rgba16f) && fits(frames, Format::r32f);
-}
-
-glm::vec3 apart(glm::vec4 colour) {
-  const float sides = (colour.x + colour.z) * 0.25f, middle = colour.y * 0.5f;
-  return {sides + middle, (colour.x - colour.z) * 0.5f, middle - sides};
-}
-
-glm::vec4 together(glm::vec3 v) {
-  const float rest = v.x - v.z;
-  return {rest + v.y, v.x + v.z, rest - v.y, 0.0f};
-}
-
-struct ColourBox {
-  glm::vec3 least, most;
-};
-
-ColourBox box_around(const AccumulateSettings& settings, const ConstImageView& now, int x, int y) {
-  const auto texel = [&](int i, int j) {
-    return apart(load_texel<Format::rgba16f>(now, std::clamp(x + i, 0, now.width - 1),
-                                             std::clamp(y + j, 0, now.height - 1)));
-  };
-  ColourBox box{texel(-1, -1), texel(-1, -1)};
-  glm::vec3 sum{0.0f}, squares{0.0f};
-  for (int j = -1; j <= 1; ++j) {
-    for (int i = -1; i <= 1; ++i) {
-      const glm::vec3 other = texel(i, j);
-      for (int c = 0; c < 3; ++c) {
-        box.least[c] = other[c] < box.least[c] ? other[c] : box.least[c];
-        box.most[c] = other[c] > box.most[c] ? other[c] : box.most[c];
-        sum[c] += other[c];
-        squares[c] += other[c] * other[c];
-      }
-    }
-  }
-  if (settings.box == HistoryBox::extent) return box;
-  for (int c = 0; c < 3; ++c) {
-    const float mean = sum[c] / float{kBoxPixels};
-    const float variance = squares[c] / float{kBoxPixels} - mean * mean;
-    const float reach = settings.deviations * std::sqrt(variance > 0.0f ? variance : 0.0f);
-    box.least[c] = mean - reach;
-    box.most[c] = mean + reach;
-  }
-  return box;
-}
-
-glm::vec4 cut_to_box(const ColourBox& box, glm::vec4 colour) {
-  const glm::vec3 own = apart(colour);
-  glm::vec3 inside = own;
-  for (int c = 0; c < 3; ++c) {
-    if (own[c] < box.least[c]) {
-      inside[c] = box.least[c];
-    } else if (own[c] > box.most[c]) {
-      inside[c] = box.most[c];
-    }
-  }
-  const bool is_cut = inside.x != own.x || inside.y != own.y || inside.z != own.z;
-  return is_cut ? together(inside) : colour;
 }
 
 /// A thread's memory: the frame's rows in a ring, a row of the old, and rows of the result.
@@ -167,35 +105,10 @@ void accumulate_band(const AccumulateWork& work, int first, int end, AccumulateS
 
 }  // namespace
 
-void accumulate_oracle(const AccumulateSettings& settings, const ConstImageView& now,
-                       const ConstImageView& old, const ImageView& result, const ImageView& frames,
-                       const Profile& profile, ThreadPool& pool) {
-  assert(fit_each_other(now, old, result, frames));
-  fullscreen_pass<Format::rgba16f>(result, profile, pool, [&](int x, int y) {
-    const glm::vec4 fresh = load_texel<Format::rgba16f>(now, x, y);
-    const glm::vec4 found = load_texel<Format::rgba16f>(old, x, y);
-    float& count = row<float>(frames, y)[static_cast<std::size_t>(x)];
-    count = 1.0f;
-    const float light = std::fabs(found.x) + std::fabs(found.y) + std::fabs(found.z);
-    if (!(found.w > 0.0f && light < kMostLight)) return fresh;
-    const glm::vec4 kept = settings.box == HistoryBox::none
-                               ? found
-                               : cut_to_box(box_around(settings, now, x, y), found);
-    const float more = found.w + 1.0f;
-    count = more < kLongestHistory ? more : kLongestHistory;
-    const float share = 1.0f / more > settings.least_share ? 1.0f / more : settings.least_share;
-    const glm::vec4 mixed = kept + share * (fresh - kept);
-    return glm::vec4{mixed.x, mixed.y, mixed.z, fresh.w};
-  });
-}
-
 void accumulate(const AccumulateSettings& settings, const ConstImageView& now,
                 const ConstImageView& old, const ImageView& result, const ImageView& frames,
                 const Profile& profile, ThreadPool& pool) {
   assert(fit_each_other(now, old, result, frames));
-  if (pool.isa() == Isa::scalar) {
-    return accumulate_oracle(settings, now, old, result, frames, profile, pool);
-  }
   const AccumulateWork work{settings, now, old, result, frames, profile, pool.isa()};
   for_each_band_with<AccumulateScratch>(
       pool, now.height, kAccumulateRows,

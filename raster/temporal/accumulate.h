@@ -44,9 +44,4 @@ void accumulate(const AccumulateSettings& settings, const ConstImageView& now,
                 const ConstImageView& old, const ImageView& result, const ImageView& frames,
                 const Profile& profile, ThreadPool& pool);
 
-/// Its oracle and scalar form: pixel by pixel. Equal to the bit.
-void accumulate_oracle(const AccumulateSettings& settings, const ConstImageView& now,
-                       const ConstImageView& old, const ImageView& result, const ImageView& frames,
-                       const Profile& profile, ThreadPool& pool);
-
 }  // namespace softfocus

@@ -6,9 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <cmath>
-#include <cstring>
-#include <glm/vec4.hpp>
 #include <numeric>
 #include <vector>
 
@@ -43,17 +40,6 @@ constexpr int kOwnedRows = 16;  // of the result, a thread at a time
 struct Place {
   int x, y;
 };
-constexpr Place kNowhere{-1, -1};
-
-Place place_now(const ConstImageView& velocity, int x, int y) {
-  const glm::vec4 motion = load_texel<Format::rg16f>(velocity, x, y);
-  const float at_x = std::floor(static_cast<float>(x) + motion.x + 0.5f);
-  const float at_y = std::floor(static_cast<float>(y) + motion.y + 0.5f);
-  const bool is_inside = at_x >= 0.0f && at_x < static_cast<float>(velocity.width) &&
-                         at_y >= 0.0f && at_y < static_cast<float>(velocity.height);
-  return is_inside ? Place{static_cast<int>(at_x), static_cast<int>(at_y)} : kNowhere;
-}
-
 /// Halves above 0 are in the order of their bits.
 bool has_depth(std::uint16_t bits) { return bits > 0 && bits <= 0x7C00; }
 
@@ -67,11 +53,6 @@ void store_moved(const std::uint16_t* from, const Profile& profile, std::uint16_
 /// Stores a row of texels in the same way; `planes` is memory to use again.
 void store_row(const ConstImageView& from, int y, const Profile& profile, Isa isa,
                std::vector<float>& planes, std::uint16_t* to) {
-  if (isa == Isa::scalar) {
-    const std::uint16_t* texels = row<std::uint16_t>(from, y).data();
-    for (int x = 0; x < from.width; ++x) store_moved(texels + 4 * x, profile, to + 4 * x);
-    return;
-  }
   const std::ptrdiff_t plane = plane_floats(from.width);
   planes.resize(static_cast<std::size_t>(4 * plane));
   split_texels(from, y, 4, planes.data(), isa);
@@ -104,17 +85,9 @@ Targets find_targets(const ConstImageView& velocity, ThreadPool& pool) {
     for (int y = first; y < end; ++y) {
       std::int32_t* columns = targets.columns.data() + static_cast<std::size_t>(y) * targets.pitch;
       std::int32_t* rows = targets.rows.data() + static_cast<std::size_t>(y) * targets.pitch;
-      if (pool.isa() == Isa::scalar) {
-        for (int x = 0; x < width; ++x) {
-          const Place place = place_now(velocity, x, y);
-          columns[x] = place.x;
-          rows[x] = place.y;
-        }
-      } else {
-        split_texels(velocity, y, 2, motions.data(), pool.isa());
-        SOFTFOCUS_KERNEL(pool.isa(), find_row_targets)
-        ({motions.data() + 1, motions.data() + plane + 1, width, height, y, columns, rows});
-      }
+      split_texels(velocity, y, 2, motions.data(), pool.isa());
+      SOFTFOCUS_KERNEL(pool.isa(), find_row_targets)
+      ({motions.data() + 1, motions.data() + plane + 1, width, height, y, columns, rows});
       for (int x = 0; x < width; x += kSpan) {
         Targets::Reach reach{height, -1};
         for (int i = x; i < std::min(x + kSpan, width); ++i) {
@@ -183,29 +156,6 @@ const std::uint16_t* filler(const ConstImageView& scattered, int x, int y) {
 }
 
 }  // namespace
-
-std::int64_t forward_reproject_oracle(const ConstImageView& before, const ConstImageView& velocity,
-                                      const ImageView& result, const Profile& profile) {
-  const int width = before.width, height = before.height;
-  std::vector<float> nearest(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  for (int y = 0; y < height; ++y) {
-    const auto pixels = row<std::uint16_t>(result, y);
-    std::fill(pixels.begin(), pixels.end(), std::uint16_t{0});
-  }
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const Place place = place_now(velocity, x, y);
-      const glm::vec4 texel = load_texel<Format::rgba16f>(before, x, y);
-      if (place.x < 0 || !(texel.w > 0.0f)) continue;
-      float& least = nearest[static_cast<std::size_t>(place.y) * static_cast<std::size_t>(width) +
-                             static_cast<std::size_t>(place.x)];
-      if (least > 0.0f && texel.w >= least) continue;
-      least = texel.w;
-      store_texel<Format::rgba16f>(result, place.x, place.y, texel, profile);
-    }
-  }
-  return std::count(nearest.begin(), nearest.end(), 0.0f);
-}
 
 std::int64_t forward_reproject(const ConstImageView& before, const ConstImageView& velocity,
                                const ImageView& result, const Profile& profile, ThreadPool& pool) {

@@ -21,10 +21,6 @@ namespace softfocus {
 std::int64_t forward_reproject(const ConstImageView& before, const ConstImageView& velocity,
                                const ImageView& result, const Profile& profile, ThreadPool& pool);
 
-/// Its oracle: one pixel after the other. Equal to the bit.
-std::int64_t forward_reproject_oracle(const ConstImageView& before, const ConstImageView& velocity,
-                                      const ImageView& result, const Profile& profile);
-
 /// How far fill_holes() looks.
 inline constexpr int kHoleReach = 16;
 

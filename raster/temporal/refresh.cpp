@@ -47,31 +47,11 @@ Refreshed refreshed(bool is_turn, glm::vec4 fresh, glm::vec4 old) {
 
 }  // namespace
 
-std::int64_t refresh_oracle(int groups, int turn, const ConstImageView& drawn,
-                            const ConstImageView& found, const ImageView& result,
-                            const ImageView& frames, const Profile& profile, ThreadPool& pool) {
-  std::vector<std::int64_t> counts(static_cast<std::size_t>(drawn.height));
-  pool.for_each(drawn.height, [&](int y) {
-    for (int x = 0; x < drawn.width; ++x) {
-      const Refreshed pixel =
-          refreshed(refresh_group(x, y, groups) == turn, load_texel<Format::rgba16f>(drawn, x, y),
-                    load_texel<Format::rgba16f>(found, x, y));
-      if (pixel.frames == 1.0f) ++counts[static_cast<std::size_t>(y)];
-      store_texel<Format::rgba16f>(result, x, y, pixel.texel, profile);
-      row<float>(frames, y)[static_cast<std::size_t>(x)] = pixel.frames;
-    }
-  });
-  return std::accumulate(counts.begin(), counts.end(), std::int64_t{0});
-}
-
 std::int64_t refresh(int groups, int turn, const ConstImageView& drawn, const ConstImageView& found,
                      const ImageView& result, const ImageView& frames, const Profile& profile,
                      ThreadPool& pool) {
   assert(drawn.format == Format::rgba16f && found.format == Format::rgba16f);
   assert(groups >= 1 && groups <= kMostGroups && turn >= -1 && turn < groups);
-  if (pool.isa() == Isa::scalar) {
-    return refresh_oracle(groups, turn, drawn, found, result, frames, profile, pool);
-  }
   std::vector<std::int64_t> counts(static_cast<std::size_t>(drawn.height));
   for_each_band(pool, drawn.height, kPassRows, [&](int first, int end) {
     const int width = drawn.width, whole = width - width % kMostLanes;

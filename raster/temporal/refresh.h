@@ -28,9 +28,4 @@ std::int64_t refresh(int groups, int turn, const ConstImageView& drawn, const Co
                      const ImageView& result, const ImageView& frames, const Profile& profile,
                      ThreadPool& pool);
 
-/// Its oracle and scalar form. Equal to the bit.
-std::int64_t refresh_oracle(int groups, int turn, const ConstImageView& drawn,
-                            const ConstImageView& found, const ImageView& result,
-                            const ImageView& frames, const Profile& profile, ThreadPool& pool);
-
 }  // namespace softfocus

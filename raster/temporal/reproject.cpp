@@ -4,16 +4,10 @@
 #include "raster/temporal/reproject.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
-#include <cmath>
-#include <glm/vec2.hpp>
-#include <glm/vec4.hpp>
-#include <optional>
 #include <vector>
 
 #include "raster/images/image.h"
-#include "raster/images/texel.h"
 #include "raster/passes/fullscreen_pass.h"
 #include "raster/temporal/split_texels.h"
 #include "raster/threads/loops.h"
@@ -52,99 +46,6 @@ constexpr int kReprojectRows = 32;
   return fits(input.depths, Format::rgba16f) && fits(input.velocity, Format::rg16f) &&
          fits(input.before, Format::rgba16f) && fits(input.frames, Format::r32f) &&
          fits(result, Format::rgba16f);
-}
-
-struct DepthRange {
-  glm::ivec2 nearest;
-  float least, most;
-};
-
-DepthRange depths_around(const ConstImageView& depths, int x, int y) {
-  const auto place_at = [&](int i, int j) {
-    return glm::ivec2{std::clamp(x + i, 0, depths.width - 1),
-                      std::clamp(y + j, 0, depths.height - 1)};
-  };
-  const auto depth_at = [&](glm::ivec2 place) {
-    return compared_depth(load_texel<Format::rgba16f>(depths, place.x, place.y).w);
-  };
-  const glm::ivec2 first = place_at(-1, -1);
-  DepthRange range{first, depth_at(first), depth_at(first)};
-  for (int j = -1; j <= 1; ++j) {
-    for (int i = -1; i <= 1; ++i) {
-      const glm::ivec2 place = place_at(i, j);
-      const float depth = depth_at(place);
-      if (depth < range.least) {
-        range.least = depth;
-        range.nearest = place;
-      }
-      range.most = depth > range.most ? depth : range.most;
-    }
-  }
-  return range;
-}
-
-std::array<float, 4> cubic_weights(float s) {
-  return {s * (s * (1.0f - s * 0.5f) - 0.5f), s * s * (s * 1.5f - 2.5f) + 1.0f,
-          s * (s * (2.0f - s * 1.5f) + 0.5f), s * s * (s * 0.5f - 0.5f)};
-}
-
-/// The curve's colour at the place (s, t) past a pixel; nothing if one of 4x4 does not count.
-std::optional<glm::vec4> cubic_colour(const ConstImageView& before, int column, int line, float s,
-                                      float t, float low, float high) {
-  const std::array<float, 4> of_columns = cubic_weights(s), of_rows = cubic_weights(t);
-  glm::vec4 sum{0.0f};
-  for (int j = 0; j < 4; ++j) {
-    for (int i = 0; i < 4; ++i) {
-      const int x = column + i - 1, y = line + j - 1;
-      if (x < 0 || x >= before.width || y < 0 || y >= before.height) return {};
-      const glm::vec4 texel = load_texel<Format::rgba16f>(before, x, y);
-      const float depth = compared_depth(texel.w);
-      if (!(depth >= low && depth <= high)) return {};
-      const auto of_column = of_columns[static_cast<std::size_t>(i)];
-      sum += (of_column * of_rows[static_cast<std::size_t>(j)]) * texel;
-    }
-  }
-  for (int c = 0; c < 3; ++c) sum[c] = sum[c] > 0.0f ? sum[c] : 0.0f;
-  return sum;
-}
-
-glm::vec4 found_before(const ReprojectSettings& settings, const ReprojectInput& input, int x, int y,
-                       const DepthRange& range) {
-  const float tolerance = used_depth_tolerance(settings);
-  const float low = range.least - tolerance * range.least;
-  const float high = range.most + tolerance * range.most;
-  const glm::vec4 motion =
-      load_texel<Format::rg16f>(input.velocity, range.nearest.x, range.nearest.y);
-  const float u = static_cast<float>(x) - motion.x, v = static_cast<float>(y) - motion.y;
-  const int width = input.before.width, height = input.before.height;
-  if (!(u > -1.0f && v > -1.0f && u < static_cast<float>(width) &&
-        v < static_cast<float>(height))) {
-    return glm::vec4{0.0f};
-  }
-  const float column = std::floor(u), line = std::floor(v);
-  const float s = u - column, t = v - line;
-  glm::vec4 sum{0.0f};
-  float sum_of_weights = 0.0f;
-  for (int j = 0; j < 2; ++j) {
-    for (int i = 0; i < 2; ++i) {
-      const float weight = (i == 1 ? s : 1.0f - s) * (j == 1 ? t : 1.0f - t);
-      const int at_x = static_cast<int>(column) + i, at_y = static_cast<int>(line) + j;
-      if (at_x < 0 || at_x >= width || at_y < 0 || at_y >= height || !(weight > 0.0f)) continue;
-      glm::vec4 texel = load_texel<Format::rgba16f>(input.before, at_x, at_y);
-      const float depth = compared_depth(texel.w);
-      if (!(depth >= low && depth <= high)) continue;
-      texel.w = load_texel<Format::r32f>(input.frames, at_x, at_y).x;
-      sum += weight * texel;
-      sum_of_weights += weight;
-    }
-  }
-  glm::vec4 found = sum_of_weights > 0.0f ? sum / sum_of_weights : glm::vec4{0.0f};
-  if (settings.is_cubic && (s > 0.0f || t > 0.0f)) {
-    const auto curve = cubic_colour(input.before, static_cast<int>(column), static_cast<int>(line),
-                                    s, t, low, high);
-    if (curve) found = {curve->x, curve->y, curve->z, found.w};
-  }
-  return found;
 }
 
 /// A thread's memory: the rows around one in a ring, and a row of the result.
@@ -213,45 +114,18 @@ float used_depth_tolerance(const ReprojectSettings& settings) {
   return settings.depth_tolerance > 0.0f ? settings.depth_tolerance : kAnyDepth;
 }
 
-void reverse_reproject_oracle(const ReprojectSettings& settings, const ReprojectInput& input,
-                              const ImageView& result, const Profile& profile, ThreadPool& pool) {
-  assert(fit_together(input, result));
-  fullscreen_pass<Format::rgba16f>(result, profile, pool, [&](int x, int y) {
-    const float own = compared_depth(load_texel<Format::rgba16f>(input.depths, x, y).w);
-    const DepthRange range = settings.takes_neighbours ? depths_around(input.depths, x, y)
-                                                       : DepthRange{{x, y}, own, own};
-    return found_before(settings, input, x, y, range);
-  });
-}
-
 void reverse_reproject(const ReprojectSettings& settings, const ReprojectInput& input,
                        const ImageView& result, const Profile& profile, ThreadPool& pool) {
   assert(fit_together(input, result));
   assert(input.before.stride_bytes % 8 == 0 && input.frames.stride_bytes % 4 == 0);
-  if (pool.isa() == Isa::scalar) {
-    return reverse_reproject_oracle(settings, input, result, profile, pool);
-  }
   const ReprojectWork work{settings, input, result, profile, pool.isa()};
   for_each_band_with<ReprojectScratch>(
       pool, result.height, kReprojectRows,
       [&](int first, int end, auto& scratch) { reproject_band(work, first, end, scratch); });
 }
 
-void put_depths_oracle(const ConstImageView& drawn, const ImageView& found, const Profile& profile,
-                       ThreadPool& pool) {
-  assert(drawn.format == Format::rgba16f && found.format == Format::rgba16f);
-  assert(drawn.width == found.width && drawn.height == found.height);
-  // A pixel reads no other pixel of the target.
-  fullscreen_pass<Format::rgba16f>(found, profile, pool, [&](int x, int y) {
-    glm::vec4 texel = load_texel<Format::rgba16f>(found, x, y);
-    if (texel.w > 0.0f) texel.w = load_texel<Format::rgba16f>(drawn, x, y).w;
-    return texel;
-  });
-}
-
 void put_depths(const ConstImageView& drawn, const ImageView& found, const Profile& profile,
                 ThreadPool& pool) {
-  if (pool.isa() == Isa::scalar) return put_depths_oracle(drawn, found, profile, pool);
   assert(drawn.format == Format::rgba16f && found.format == Format::rgba16f);
   assert(drawn.width == found.width && drawn.height == found.height);
   for_each_band(pool, found.height, kPassRows, [&](int first, int end) {

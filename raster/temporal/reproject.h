@@ -42,18 +42,10 @@ struct ReprojectInput {
 void reverse_reproject(const ReprojectSettings& settings, const ReprojectInput& input,
                        const ImageView& result, const Profile& profile, ThreadPool& pool);
 
-/// Its oracle and scalar form: pixel by pixel. Equal to the bit.
-void reverse_reproject_oracle(const ReprojectSettings& settings, const ReprojectInput& input,
-                              const ImageView& result, const Profile& profile, ThreadPool& pool);
-
 /// Where something was found, alpha becomes the depth of `drawn` in place of a count of frames.
 /// Both are RGBA16F of one size.
 void put_depths(const ConstImageView& drawn, const ImageView& found, const Profile& profile,
                 ThreadPool& pool);
-
-/// Its oracle and scalar form. Equal to the bit.
-void put_depths_oracle(const ConstImageView& drawn, const ImageView& found, const Profile& profile,
-                       ThreadPool& pool);
 
 /// The tolerance as it is computed with; the shader gets it so.
 float used_depth_tolerance(const ReprojectSettings& settings);

@@ -12,13 +12,35 @@
 namespace softfocus {
 namespace {
 
+/// The type of an input that is a number, vector or matrix; else nothing.
 std::string glsl_type(const SpirvModule& module, const SpirvType& type) {
+  if (type.kind == SpirvKind::matrix) {
+    const std::uint32_t rows = module.type(type.element).count;
+    const std::string name = "mat" + std::to_string(type.count);
+    return rows == type.count ? name : name + "x" + std::to_string(rows);
+  }
   const bool is_vector = type.kind == SpirvKind::vector;
   const SpirvType& number = is_vector ? module.type(type.element) : type;
   const bool is_float = number.kind == SpirvKind::floating;
   if (!is_float && number.kind != SpirvKind::integer) return {};
   if (!is_vector) return is_float ? "float" : number.is_signed ? "int" : "uint";
   return (is_float ? "vec" : number.is_signed ? "ivec" : "uvec") + std::to_string(type.count);
+}
+
+constexpr const char* kCorner = "softfocus_corner";
+
+/// The place in the picture as a value of such a type: u, v, 0, 1, in each column.
+std::string place_of(const SpirvModule& module, const SpirvType& type) {
+  std::string made = glsl_type(module, type) + "(";
+  if (type.kind == SpirvKind::matrix) {
+    for (std::uint32_t i = 0; i < type.count; ++i) {
+      made.append(i == 0 ? "" : ", ").append(place_of(module, module.type(type.element)));
+    }
+    return made + ")";
+  }
+  const std::string parts = "xyzw";
+  made.append("vec4(").append(kCorner).append(" * 0.5 + 0.5, 0.0, 1.0).");
+  return made + parts.substr(0, type.kind == SpirvKind::vector ? type.count : 1) + ")";
 }
 
 /// A shader's version, as its first line says it.
@@ -39,8 +61,6 @@ DriverVersion version_of(const PipelinePass& pass) {
   return version;
 }
 
-constexpr const char* kCorner = "softfocus_corner";
-
 /// A triangle over the target for a fragment shader whose inputs are the place in the picture, as
 /// run_shader() has them: u, v, 0, 1.
 ShaderSource vertex_text(const PipelinePass& pass) {
@@ -54,22 +74,27 @@ ShaderSource vertex_text(const PipelinePass& pass) {
     const auto decorations = module.decorations.find(id);
     if (decorations == module.decorations.end() || decorations->second.builtin >= 0) continue;
     const SpirvDecorations& of = decorations->second;
-    const SpirvType& type = module.pointed(variable.type);
+    const SpirvType& whole = module.pointed(variable.type);
+    const bool is_array = whole.kind == SpirvKind::array;
+    const SpirvType& type = is_array ? module.type(whole.element) : whole;
     const std::string name = glsl_type(module, type);
     if (name.empty()) {
       throw DriverError(pass.where + ": the input '" + of.name +
-                        "' is no vector; for drivers a vector would be right");
+                        "' is a structure; for drivers a vector, a matrix or an array of them "
+                        "would be right");
     }
     if (of.location >= 0) {
       head.append("layout(location = ").append(std::to_string(of.location)).append(") ");
     }
     if (of.is_flat) head += "flat ";
-    head.append(out).append(name).append(" ").append(of.name).append(";\n");
-    const std::string parts = "xyzw";
-    const std::size_t count = type.kind == SpirvKind::vector ? type.count : 1;
-    body.append("  ").append(of.name).append(" = ").append(name);
-    body.append("(vec4(").append(kCorner).append(" * 0.5 + 0.5, 0.0, 1.0).");
-    body.append(parts.substr(0, count)).append(");\n");
+    head.append(out).append(name).append(" ").append(of.name);
+    if (is_array) head.append("[").append(std::to_string(whole.count)).append("]");
+    head += ";\n";
+    for (std::uint32_t i = 0; i < (is_array ? whole.count : 1); ++i) {
+      body.append("  ").append(of.name);
+      if (is_array) body.append("[").append(std::to_string(i)).append("]");
+      body.append(" = ").append(place_of(module, type)).append(";\n");
+    }
   }
   return {head + "void main() {\n  gl_Position = vec4(" + kCorner + ", 0.0, 1.0);\n" + body + "}\n",
           {"the triangle of " + pass.where}};

@@ -117,9 +117,9 @@ void add_messages(std::string_view log, const std::string& name, Messages& messa
   throw ShaderError(why);
 }
 
-/// Drivers know no names in `#line`, and want `#extension` before all else. Mesa's compute
-/// `mediump` of ES with halves; here it is binary32.
-std::string text_for_drivers(const GlslText& text) {
+/// Drivers know no names in `#line`, and want `#extension` before all else. They need no profile
+/// that the source does not name. Mesa's compute `mediump` of ES with halves; here it is binary32.
+std::string text_for_drivers(const GlslText& text, const std::string& source) {
   std::string extensions, rest;
   int conditions = 0;
   const auto add = [&](std::string_view from) {
@@ -139,9 +139,21 @@ std::string text_for_drivers(const GlslText& text) {
     }
   };
   for (const std::string* part : {&text.before, &text.text, &text.after}) add(*part);
-  if (text.taken_as.is_es) extensions += "#define mediump highp\n#define lowp highp\n";
-  return text.version.substr(std::min(text.version.find('#'), text.version.size())) + extensions +
-         rest;
+  if (text.taken_as.is_es) {
+    extensions += "#define mediump highp\n#define lowp highp\n";
+    // Else they are lowp, too. No #extension may stand behind.
+    if (rest.find("#extension") == rest.npos) {
+      extensions += "precision highp sampler2D;\nprecision highp samplerCube;\n";
+    }
+  }
+  std::string version = text.version.substr(std::min(text.version.find('#'), text.version.size()));
+  constexpr std::string_view kProfile = " compatibility";
+  const std::size_t at = version.find(kProfile);
+  const std::size_t line = std::min(source.find("#version"), source.size());
+  const bool is_said =
+      source.substr(line, source.find('\n', line) - line).find(kProfile) != source.npos;
+  if (at != version.npos && !is_said) version.erase(at, kProfile.size());
+  return version + extensions + rest;
 }
 
 CompiledGlsl compiled(const GlslSource& source, GlslText text, bool is_relaxed) {
@@ -216,7 +228,7 @@ CompiledGlsl compiled(const GlslSource& source, GlslText text, bool is_relaxed) 
     refuse_at_word(text.text, source.name, why);
   }
   out.convention = text.convention;
-  if (!text.is_hlsl) out.text = text_for_drivers(text);
+  if (!text.is_hlsl) out.text = text_for_drivers(text, source.text);
   out.files = std::move(text.files);
   out.parameters = std::move(text.parameters);
   out.warnings = std::move(messages.warnings);
@@ -249,7 +261,10 @@ CompiledGlsl compile_glsl(const GlslSource& source, const GlslReader& read) {
     GlslText raised = glsl_text(source, read, true, least);
     if (!is_relaxable && !raised.is_raised) throw;
     try {
-      return compiled(source, std::move(raised), is_relaxable);
+      CompiledGlsl made = compiled(source, std::move(raised), is_relaxable);
+      // Drivers know the extensions.
+      if (!made.text.empty()) made.text = text_for_drivers(glsl_text(source, read), source.text);
+      return made;
     } catch (const ShaderError&) {
     }
     throw;

@@ -54,7 +54,7 @@ precision highp usamplerCube;
 precision highp usampler2DArray;
 )";
 /// ES 1.00's functions for a text of both versions, but those of GL_EXT_shader_texture_lod, which
-/// glslang has. They are no macros: shaders name variables `texture`.
+/// glslang has. Macros of `texture` would not do: shaders name variables so.
 constexpr const char* kOldTextures =
     R"(vec4 texture2D(sampler2D s, vec2 p) { return texture(s, p); }
 vec4 textureCube(samplerCube s, vec3 p) { return texture(s, p); }
@@ -140,8 +140,9 @@ bool has_array_type(std::span<const GlslToken> tokens) {
 
 /// Functions and types that ES 1.00 has not.
 bool has_es3_words(std::span<const GlslToken> tokens) {
-  for (const char* const word : {"sampler3D", "sampler2DArray", "texelFetch", "textureLod",
-                                 "textureSize", "textureGrad", "usampler2D", "isampler2D"}) {
+  for (const char* const word :
+       {"sampler3D", "sampler2DArray", "texelFetch", "textureLod", "textureSize", "textureGrad",
+        "usampler2D", "isampler2D", "uint", "uvec2", "uvec3", "uvec4"}) {
     if (uses(tokens, word)) return true;
   }
   for (std::size_t i = 0; i + 1 < tokens.size(); ++i) {
@@ -176,6 +177,7 @@ GlslSurroundings shadertoy(const GlslSource& source, std::span<const GlslToken> 
                            const GlslVersion& version) {
   GlslSurroundings around;
   around.before = declarations("uniform", kShadertoyUniforms, source, tokens);
+  if (lacks(tokens, "HW_PERFORMANCE")) around.before += "#define HW_PERFORMANCE 1\n";
   if (has_function(tokens, "void", "main")) return around;
   const char* const color = version.has_outputs() ? "softfocus_color" : "gl_FragColor";
   if (version.has_outputs()) around.before += "out vec4 softfocus_color;\n";
@@ -275,8 +277,8 @@ GlslConvention recognise(ShaderStage stage, std::span<const GlslToken> tokens, b
   }
   if (has_version) return GlslConvention::plain;
   if (uses(tokens, "vUv") || uses(tokens, "tDiffuse")) return GlslConvention::three;
-  // It mixes both versions of ES, which three.js alone allows.
-  if (has_es3_words(tokens) && uses(tokens, "precision") &&
+  // It mixes both versions of ES, which three.js and its like allow.
+  if ((has_es3_words(tokens) || has_array_type(tokens)) &&
       (uses(tokens, "varying") || uses(tokens, "gl_FragColor"))) {
     return GlslConvention::three;
   }
@@ -324,8 +326,9 @@ bool has_global_outputs(std::span<const GlslToken> tokens) {
 GlslVersion version_of(GlslConvention convention, std::span<const GlslToken> tokens) {
   GlslVersion es3{300, true, "es"}, es1{100, true, ""};
   switch (convention) {
-    case GlslConvention::shadertoy:
-    case GlslConvention::three: return es3;
+    case GlslConvention::shadertoy: return es3;
+    case GlslConvention::three:  // ES 3.00 has a function of that name
+      return declares(tokens, "texture") && !has_es3_words(tokens) ? es1 : es3;
     case GlslConvention::gl_transitions: return has_array_type(tokens) ? es3 : es1;
     case GlslConvention::libretro: return {130, false, ""};
     default: break;
@@ -342,7 +345,8 @@ GlslVersion version_of(GlslConvention convention, std::span<const GlslToken> tok
 }
 
 GlslSurroundings glsl_surroundings(GlslConvention convention, const GlslSource& source,
-                                   std::span<const GlslToken> tokens, const GlslVersion& version) {
+                                   std::span<const GlslToken> tokens, const GlslVersion& version,
+                                   bool is_web) {
   GlslSurroundings around;
   if (convention == GlslConvention::shadertoy) around = shadertoy(source, tokens, version);
   if (convention == GlslConvention::gl_transitions) around = transition(source, tokens, version);
@@ -380,15 +384,23 @@ GlslSurroundings glsl_surroundings(GlslConvention convention, const GlslSource& 
   }
   if (uses(tokens, "textureQueryLOD")) around.before += "#define textureQueryLOD textureQueryLod\n";
   if (version.is_es && version.number >= 300) around.before = renamed(tokens) + around.before;
-  if (version.is_es && convention != GlslConvention::plain) {
-    if (uses(tokens, "sample")) around.before = "#define sample sample_\n" + around.before;
+  if (version.is_es && (is_web || convention != GlslConvention::plain)) {
+    if (uses(tokens, "sample") && convention != GlslConvention::plain)
+      around.before = "#define sample sample_\n" + around.before;
     std::string front = kWebExtensions;
     front += kPrecisions;
     if (version.number >= 300) {
       front += kSamplerPrecisions;
-      if (uses(tokens, "texture2D") || uses(tokens, "texture2DProj") ||
-          uses(tokens, "texture2DLod") || uses(tokens, "textureCube")) {
-        front += kOldTextures;
+      // Drivers let no function of ES 3.00 have the name of one that is built into ES 1.00.
+      std::string names;
+      bool uses_old = false;
+      for (const std::string old : {"texture2D", "textureCube", "texture2DProj", "texture2DLod"}) {
+        uses_old = uses_old || uses(tokens, old);
+        if (declares(tokens, old)) continue;
+        names.append("#define ").append(old) += " softfocus_" + old + "\n";
+      }
+      if (uses_old) {
+        front += names + kOldTextures;
         if (source.stage == ShaderStage::fragment) front += kOldTexturesOfFragments;
       }
     }

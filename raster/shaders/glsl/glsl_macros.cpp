@@ -12,7 +12,7 @@ bool begins_word(const GlslToken& token) {
 
 namespace {
 
-constexpr int kMostRounds = 200;
+constexpr std::size_t kMostRounds = 200;
 constexpr double kEndless = std::numeric_limits<double>::infinity();
 
 bool is_word_or_number(const GlslToken& token) {
@@ -131,6 +131,10 @@ void GlslMacros::find_loose(std::span<const GlslToken> all) {
     if (open != 0 && uses_arguments(of)) is_endless_ = true;
   }
   if (pastes) find_pasted(all);
+  is_called_again_ = is_adjacent_ || !pasted_names_.empty() || 2 * names_.size() >= kMostRounds;
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    is_called_again_ = is_called_again_ || (all[i - 1].text == ")" && all[i].text == "(");
+  }
 }
 bool GlslMacros::may_open(const GlslToken& token,
                           std::span<const std::string_view> parameters) const {
@@ -197,11 +201,14 @@ void GlslMacros::find_pasted(std::span<const GlslToken> all) {
 }
 
 void GlslMacros::weigh_all() {
-  int rounds = 0;
-  for (bool grew = true; grew && !is_endless_; ++rounds) {
+  // No macro is replaced within itself: two that name each other end as soon as those do that do
+  // not, unless brackets behind what one became call it again.
+  const std::size_t most = std::min(2 * names_.size() + 2, kMostRounds);
+  std::size_t rounds = 0;
+  for (bool grew = true; grew && rounds < most; ++rounds) {
     grew = false;
     for (const Definition& of : definitions_) grew = add(of) || grew;
-    is_endless_ = rounds == kMostRounds && grew;
+    is_endless_ = is_endless_ || (grew && rounds + 1 == most && is_called_again_);
   }
 }
 

@@ -596,7 +596,8 @@ GlslText glsl_text(const GlslSource& source, const GlslReader& read, bool raise,
   } else if (uses(tokens, "GL_ARB_uniform_buffer_object")) {
     out.before += "#extension GL_ARB_uniform_buffer_object : enable\nlayout(std140) uniform;\n";
   }
-  GlslSurroundings around = glsl_surroundings(out.convention, source, tokens, version);
+  GlslSurroundings around =
+      glsl_surroundings(out.convention, source, tokens, version, !out.said_version);
   out.before += around.before;
   out.after = around.after;
   if (out.after.empty()) {  // an error at the end is one of the last line

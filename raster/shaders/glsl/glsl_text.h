@@ -71,12 +71,14 @@ void check_limits(std::string_view text, const std::string& name);
 [[noreturn]] void refuse_at_word(std::string_view text, const std::string& name,
                                  const std::string& why);
 
-/// What a convention declares for a shader that uses it and does not declare it itself.
+/// What a convention declares for a shader that uses it and does not declare it itself. `is_web`:
+/// of no version, which browsers' engines put in front with the precisions.
 struct GlslSurroundings {
   std::string before{}, after{};
 };
 GlslSurroundings glsl_surroundings(GlslConvention convention, const GlslSource& source,
-                                   std::span<const GlslToken> tokens, const GlslVersion& version);
+                                   std::span<const GlslToken> tokens, const GlslVersion& version,
+                                   bool is_web);
 
 /// By a file's name, or by the semantics of Direct3D 10 in a text without a #version.
 bool is_hlsl(const GlslSource& source);

@@ -1,6 +1,9 @@
 // What three.js puts around the shaders of its passes. The formulas of its helpers are well known;
 // the text is ours.
 
+#include <algorithm>
+#include <iterator>
+
 #include "raster/shaders/glsl/glsl_text.h"
 
 namespace softfocus {
@@ -53,6 +56,7 @@ float unpackRGBAToDepth(const in vec4 c) {
 float unpackRGBToDepth(const in vec3 c) {
   return dot(c, vec3(255.0 / 256.0, 255.0 / 65536.0, 1.0 / 65536.0));
 }
+float unpackRGToDepth(const in vec2 c) { return dot(c, vec2(255.0 / 256.0, 1.0 / 256.0)); }
 vec4 packDepthToRGBA(const in float depth) {
   if (depth <= 0.0) return vec4(0.0);
   if (depth >= 1.0) return vec4(1.0);
@@ -60,6 +64,17 @@ vec4 packDepthToRGBA(const in float depth) {
   float second = floor(rest * 256.0);
   rest = fract(rest * 256.0);
   return vec4(first / 255.0, second / 255.0, floor(rest * 256.0) / 255.0, fract(rest * 256.0));
+}
+vec3 packDepthToRGB(const in float depth) {
+  if (depth <= 0.0) return vec3(0.0);
+  if (depth >= 1.0) return vec3(1.0);
+  float first = floor(depth * 256.0), rest = fract(depth * 256.0) * 256.0;
+  return vec3(first / 255.0, floor(rest) / 255.0, fract(rest));
+}
+vec2 packDepthToRG(const in float depth) {
+  if (depth <= 0.0) return vec2(0.0);
+  if (depth >= 1.0) return vec2(1.0);
+  return vec2(floor(depth * 256.0) / 255.0, fract(depth * 256.0));
 }
 vec4 pack2HalfToRGBA(const in vec2 v) {
   vec2 low = fract(v * 255.0);
@@ -79,9 +94,6 @@ float perspectiveDepthToViewZ(const in float depth, const in float near, const i
   return near * far / ((far - near) * depth - far);
 }
 )";
-/// A pass draws into a linear target, where three.js changes neither tones nor colours.
-constexpr const char* kNothing = "";
-
 struct Include {
   const char* name;
   const char* text;
@@ -89,21 +101,6 @@ struct Include {
 constexpr Include kThreeIncludes[] = {
     {"common", kThreeCommon},
     {"packing", kThreePacking},
-    {"tonemapping_fragment", kNothing},
-    {"colorspace_fragment", kNothing},
-    {"encodings_fragment", kNothing},
-    {"fog_pars_fragment", kNothing},
-    {"fog_fragment", kNothing},
-    {"fog_pars_vertex", kNothing},
-    {"fog_vertex", kNothing},
-    {"logdepthbuf_pars_fragment", kNothing},
-    {"logdepthbuf_fragment", kNothing},
-    {"logdepthbuf_pars_vertex", kNothing},
-    {"logdepthbuf_vertex", kNothing},
-    {"clipping_planes_pars_fragment", kNothing},
-    {"clipping_planes_fragment", kNothing},
-    {"clipping_planes_pars_vertex", kNothing},
-    {"clipping_planes_vertex", kNothing},
     {"begin_vertex", "vec3 transformed = vec3(position);\n"},
     {"beginnormal_vertex", "vec3 objectNormal = vec3(normal);\n"},
     {"defaultnormal_vertex", "vec3 transformedNormal = normalMatrix * objectNormal;\n"},
@@ -111,6 +108,33 @@ constexpr Include kThreeIncludes[] = {
      "vec4 mvPosition = modelViewMatrix * vec4(transformed, 1.0);\n"
      "gl_Position = projectionMatrix * mvPosition;\n"},
 };
+
+/// Parts of three.js' materials that hold nothing unless JavaScript defines something; and a pass
+/// draws into a linear target, where three.js changes neither tones nor colours.
+constexpr std::string_view kEmptyIncludes[] = {"alphahash",
+                                               "alphamap",
+                                               "alphatest",
+                                               "aomap",
+                                               "batching",
+                                               "color",
+                                               "colorspace",
+                                               "dithering",
+                                               "displacementmap",
+                                               "clipping_planes",
+                                               "emissivemap",
+                                               "encodings",
+                                               "fog",
+                                               "logdepthbuf",
+                                               "map",
+                                               "morphcolor",
+                                               "morphnormal",
+                                               "morphtarget",
+                                               "premultiplied_alpha",
+                                               "skinbase",
+                                               "skinning",
+                                               "skinnormal",
+                                               "tonemapping",
+                                               "uv"};
 
 /// What three.js puts in front of every fragment shader. Its output is linear, as that of a pass
 /// is.
@@ -145,6 +169,11 @@ bool has_output(std::span<const GlslToken> tokens) {
 const char* three_include(std::string_view name) {
   for (const Include& include : kThreeIncludes) {
     if (include.name == name) return include.text;
+  }
+  for (const std::string_view end : {"_pars_fragment", "_pars_vertex", "_fragment", "_vertex"}) {
+    if (!name.ends_with(end)) continue;
+    name.remove_suffix(end.size());
+    return std::ranges::find(kEmptyIncludes, name) != std::end(kEmptyIncludes) ? "" : nullptr;
   }
   return nullptr;
 }

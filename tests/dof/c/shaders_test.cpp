@@ -178,6 +178,32 @@ TEST_CASE("the C interface: a shader, as text or as words, gives run_shader()'s 
   }
 }
 
+TEST_CASE("the C interface: a late uniform gives the bits of a compiled one, run after run") {
+  if (is_glsl_missing()) return;
+  const Context context = open_context();
+  const softfocus_shader_source source = text_source(
+      "#version 330\nuniform int turns;\nuniform float weights[3];\nuniform vec2 shift;\n"
+      "out vec4 color;\nvoid main() {\n  color = vec4(shift, 0.0, 1.0);\n"
+      "  for (int i = 0; i < turns; ++i) color.z += sin(weights[i] + color.x) / color.y;\n}\n");
+  const Shader late = compiled_in_c(context.get(), source);
+  for (const char* name : {"turns", "weights", "shift"}) {
+    CHECK(softfocus_make_uniform_late(context.get(), late.get(), name) == SOFTFOCUS_OK);
+  }
+  for (const double turns : {3.0, 0.0, 1.0}) {
+    const Shader constant = compiled_in_c(context.get(), source);
+    for (const Shader* shader : {&late, &constant}) {
+      CHECK(set(context.get(), *shader, "turns", {turns}) == SOFTFOCUS_OK);
+      CHECK(set(context.get(), *shader, "weights", {0.3, turns, 1e-3}) == SOFTFOCUS_OK);
+      CHECK(set(context.get(), *shader, "shift", {turns / 3.0, 0.7}) == SOFTFOCUS_OK);
+    }
+    CHECK(pixel_of<float>(context.get(), late, SOFTFOCUS_FORMAT_RGBA32F) ==
+          pixel_of<float>(context.get(), constant, SOFTFOCUS_FORMAT_RGBA32F));
+  }
+  CHECK(softfocus_make_uniform_late(context.get(), late.get(), "tint") == SOFTFOCUS_BAD_ARGUMENT);
+  CHECK(std::string{softfocus_message(context.get())} ==
+        "name: the shader has no uniform 'tint'; there are shift, turns, weights");
+}
+
 TEST_CASE("the C interface: uniforms of every type, by their parts in order") {
   if (is_glsl_missing()) return;
   const Context context = open_context(1);

@@ -158,7 +158,7 @@ TEST_CASE("the aperture's texture is a hexagon, brighter towards the rim, and ke
   CHECK(at(9, 9) == 0.0f);
 }
 
-TEST_CASE("scaled copies in vectors have the oracle's bits, whatever lies beyond the source") {
+TEST_CASE("scaled copies have the same bits in all vectors, whatever lies beyond the source") {
   const Image own = test::random_halves(41, 33, 6, -0.5, 1.0);
   Image source = test::random_halves(41, 33, 5, 0.0, 4.0);
   for (int y = 4; y < 20; ++y) {

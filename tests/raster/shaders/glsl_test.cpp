@@ -117,6 +117,10 @@ TEST_CASE("a text without a version is GLSL 1.10, or ES 1.00 if it has precision
   const std::string error = error_of_text("void main() {\n  gl_FragColor = vec4(1u);\n}\n");
   CHECK(error.starts_with("mine.frag:2: 'unsigned literal': not supported"));
   CHECK(error.ends_with("(no #version: taken as GLSL 1.10)"));
+  // An engine puts the precisions in front.
+  CHECK(error_of_text(
+            "uniform highp float a;\nvoid main() { float b = a; gl_FragColor = vec4(b); }\n") ==
+        "none");
 }
 
 TEST_CASE("the compatibility profile's built-ins are inputs and uniforms by their names") {
@@ -168,10 +172,11 @@ TEST_CASE("an extension that glslang has only in a later version is had") {
                                "uniform uint u;\nout vec4 o;\nvoid main() {\n"
                                "  uint carry;\n  o = vec4(float(uaddCarry(u, 1u, carry)));\n}\n"),
                  "carry"));
-  CHECK(has_name(compiled_text("#version 130\n#extension GL_ARB_arrays_of_arrays : require\n"
-                               "void main() { float a[2][2]; a[1][0] = 1.0; "
-                               "gl_FragColor = vec4(a[1][0]); }\n"),
-                 "a"));
+  const auto older = compiled_text(
+      "#version 130\n#extension GL_ARB_arrays_of_arrays : require\n"
+      "void main() { float a[2][2]; a[1][0] = 1.0; gl_FragColor = vec4(a[1][0]); }\n");
+  CHECK(has_name(older, "a"));
+  CHECK(older.text.starts_with("#version 130\n#extension GL_ARB_arrays_of_arrays : require\n"));
 }
 
 TEST_CASE("texture2D() and its kin are there in core profiles before 4.20, as drivers have them") {
@@ -186,6 +191,7 @@ TEST_CASE("texture2D() and its kin are there in core profiles before 4.20, as dr
                                ";\n}\n";
       CHECK(error_of_text(text) == "none");
       CHECK(has_line(compiled_text(text), 6));
+      CHECK(compiled_text(text).text.find("compatibility") == std::string::npos);
     }
   }
   CHECK(error_of_text("#version 420\nuniform sampler2D t;\nout vec4 o;\nvoid main() {\n  o = "
@@ -289,6 +295,12 @@ TEST_CASE("Shadertoy's text is recognised and gets its uniforms") {
   CHECK(has_name(shader, "iChannelResolution"));
   CHECK_FALSE(has_name(shader, "iDate"));
   CHECK(has_line(shader, 3));
+  CHECK(error_of_text("#if HW_PERFORMANCE == 1\n" + toy + "#endif\n") == "none");
+  // Drivers let no function of ES 3.00 have that name.
+  CHECK(shader.text.find("#define texture2D softfocus_texture2D\n") <
+        shader.text.find("vec4 texture2D("));
+  CHECK(error_of_text("#define texture2D texture\n" + toy) == "none");
+  CHECK(shader.text.find("\nprecision highp sampler2D;\n") != std::string::npos);
   // A text that declares them, as other programs want it.
   CHECK(
       convention_of(
@@ -320,6 +332,20 @@ TEST_CASE("three.js' passes are recognised, of both versions of GLSL") {
       ShaderStage::vertex);
   CHECK(vertex.convention == GlslConvention::three);
   CHECK(has_name(vertex, "position"));
+  const auto older = compiled_text(
+      "uniform sampler2D texture;\nvarying vec2 vUv;\n#include <dithering_pars_fragment>\n"
+      "#include <uv_pars_fragment>\n#include <tonemapping_pars_fragment>\n"
+      "void main() {\n  gl_FragColor = texture2D(texture, vUv);\n  #include "
+      "<dithering_fragment>\n}\n");
+  CHECK(older.convention == GlslConvention::three);
+  CHECK(has_name(older, "texture"));
+  CHECK(error_of_text("varying vec2 vUv;\n#include <lights_pars_begin>\nvoid main() {}\n")
+            .starts_with("mine.frag:2: #include lights_pars_begin: cannot read "));
+  // No version has all of these.
+  CHECK(convention_of("varying vec2 at;\nuniform sampler2D t;\nvoid main() {\n"
+                      "  float[2] w = float[2](1.0, 2.0);\n"
+                      "  gl_FragColor = textureLod(t, at, 0.0) * w[1] + texture2D(t, at);\n}\n") ==
+        GlslConvention::three);
   GlslSource source;
   source.text =
       "#version 300 es\nout vec4 color;\nvoid main() { color = texture(tDiffuse, vUv); }\n";
@@ -450,6 +476,10 @@ TEST_CASE("macros that grow without end are refused before they are expanded") {
     circle += "\n";
   }
   CHECK(error_of_text(circle + "void main() { A0 }\n").ends_with(too_many));
+  // Brackets behind what a macro became call it again.
+  const std::string again =
+      "#version 330\nout vec4 o;\n#define A B\n#define B(x) ; ; ; ; A\nvoid main() { A";
+  CHECK(error_of_text(again + "(1)(1)(1)(1); }\n").ends_with(too_many));
   // Names that are made of words: CAT(A, 1) is A1.
   CHECK(error_of_text("#version 330\nout vec4 o;\n#define CAT(a, b) a##b\n#define A0 ;;;;\n"
                       "#define A1 CAT(A, 0) CAT(A, 0)\n#define A2 CAT(A, 1) CAT(A, 1)\n"
@@ -480,6 +510,11 @@ TEST_CASE("macros as shaders have them are no matter") {
       "  vec3 c = opacity(vec3(s), vec3(x), vivid_light, 0.5) + vivid_light(vec3(x), vec3(s));\n"
       "  o = vec4(s + c.r + NAME(2) + noise(vec2(noise(vec2(x)))));\n}\n";
   CHECK(error_of_text(text) == "none");
+  // No macro is replaced within itself.
+  CHECK(error_of_text("uniform sampler2D s;\nvarying vec2 at;\n#define TEXTURE texture2D\n"
+                      "#define texture2D(c, d) TEXTURE(c, d)\n"
+                      "void main() { gl_FragColor = texture2D(s, at) + TEXTURE(s, at); }\n") ==
+        "none");
 }
 
 TEST_CASE("what glslang would take its stack or minutes for is refused with its line") {

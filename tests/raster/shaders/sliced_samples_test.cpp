@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "raster/images/sliced_texture.h"
@@ -311,6 +312,48 @@ TEST_CASE("textures of another shape than the shader's, and samplers that are no
                        ShaderError);
   CHECK(refusal_of("samplerCubeArray", "result = texture(t, vec4(uv, 1.0, 0.0));") ==
         "slices.frag:6: samplerCubeArray is not supported; samplerCube and sampler2DArray are");
-  CHECK(refusal_of("sampler1DArray", "result = texture(t, uv);") ==
-        "slices.frag:6: sampler1DArray is not supported; sampler2DArray is");
+}
+
+TEST_CASE("a sampler1DArray reads the middle of a sampler2DArray's rows") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const Texture texture = slices_of_noise(TextureShape::array, 9, 5);
+  const ShaderTexture bound{.texture = &texture,
+                            .sampler = {Filter::trilinear, Wrap::repeat, Wrap::repeat}};
+  const std::pair<const char*, const char*> same[] = {
+      {"result = texture(t, vec2(uv.x * 9.0, uv.y * 5.0));",
+       "result = texture(t, vec3(uv.x * 9.0, 0.5, uv.y * 5.0));"},
+      {"result = textureGrad(t, uv, 0.3, uv.y);",
+       "result = textureGrad(t, vec3(uv.x, 0.5, uv.y), vec2(0.3, 0.0), vec2(uv.y, 0.0));"},
+      {"result = texelFetch(t, ivec2(uv * 9.0), 1);",
+       "result = texelFetch(t, ivec3(uv.x * 9.0, 0, uv.y * 9.0), 1);"},
+      {"result = vec4(textureSize(t, 0), textureQueryLod(t, uv.x * 9.0));",
+       "result = vec4(textureSize(t, 0).xz, textureQueryLod(t, vec2(uv.x * 9.0, 0.5)));"}};
+  for (const auto& [of_line, of_layer] : same) {
+    const UserShader line = slices_shader("sampler1DArray", of_line);
+    const UserShader layer = slices_shader("sampler2DArray", of_layer);
+    for (const Isa isa : available_isas()) {
+      const Image expected = drawn_slices(layer, bound, isa);
+      CHECK(first_difference(drawn_slices(line, bound, isa), expected) == "");
+    }
+  }
+}
+
+TEST_CASE("textureGatherOffsets reads a texel for each of its offsets") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const Texture texture = slices_of_noise(TextureShape::flat, 16, 1);
+  const ShaderTexture bound{.texture = &texture, .sampler = {.wrap_u = Wrap::repeat}};
+  const std::string offsets = "ivec2(1, 2), ivec2(-3, 0), ivec2(0, 4), ivec2(-7, -8)";
+  std::string each = "result = vec4(";
+  for (const char* one : {"1, 2", "-3, 0", "0, 4", "-7, -8"}) {
+    each += std::string{"textureGatherOffset(t, uv, ivec2("} + one + "), 2).w, ";
+  }
+  each.replace(each.size() - 2, 2, ");");
+  const UserShader all =
+      slices_shader("sampler2D", "const ivec2 o[4] = ivec2[4](" + offsets +
+                                     ");\nresult = textureGatherOffsets(t, uv, o, 2);");
+  const UserShader single = slices_shader("sampler2D", each);
+  for (const Isa isa : available_isas()) {
+    const Image expected = drawn_slices(single, bound, isa);
+    CHECK(first_difference(drawn_slices(all, bound, isa), expected) == "");
+  }
 }

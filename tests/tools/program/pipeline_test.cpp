@@ -193,6 +193,27 @@ TEST_CASE("crosscheck --pipeline: volumes, cubes and arrays of files are a drive
   }
 }
 
+TEST_CASE("crosscheck --pipeline: a driver's inputs are the place in the picture, in each column") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const TemporaryDirectory directory;
+  write_file(directory.file("inputs.frag"),
+             "#version 330\nuniform sampler2D picture;\nin mat3 m;\nin mat2x3 n;\nin vec4 a[2];\n"
+             "in float f;\nout vec4 c;\nvoid main() {\n"
+             "  c = texture(picture, m[1].xy * a[1].wx + n[1].xy) + vec4(m[2], f) + a[0];\n}\n");
+  write_file(directory.file("inputs.toml"), "[[pass]]\nshader = \"inputs.frag\"\n");
+  // Of a power of two, where a driver interpolates to the same bits.
+  for (const char* driver : {"llvmpipe", "emulated"}) {
+    if (!has_driver(driver)) continue;
+    const ProgramRun run =
+        run_program({"crosscheck", "--driver", driver, "--pipeline", directory.file("inputs.toml"),
+                     "--case", "*64x64*", "--json"});
+    CAPTURE(driver);
+    CAPTURE(run.out);
+    CHECK(run.status == 0);
+    for (const json& of : json::parse(run.out)) CHECK(of["differing"] == 0);
+  }
+}
+
 TEST_CASE("crosscheck --pipeline and bench --vs: a driver runs the same GLSL to the same bits") {
   if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
   if (!has_driver("llvmpipe")) return;
