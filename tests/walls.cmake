@@ -18,7 +18,7 @@ set(order
 # place_of(PATH VARIABLE): the number of its entry, or -1. A path is looked up once.
 function(place_of path variable)
   get_property(known GLOBAL PROPERTY "place of ${path}")
-  if(NOT known STREQUAL "")
+  if(DEFINED known)
     set(${variable} ${known} PARENT_SCOPE)
     return()
   endif()
