@@ -204,7 +204,8 @@ TEST_CASE("layers of a scene of more objects than a pass takes have the bits of 
       PreparedScene prepared = prepare_scene(scene, {}, pool);
       draw_layers(prepared, camera, 0.0, layers[0], std::span{layers}.subspan(1), pool,
                   is_limited ? std::optional{kLimitM} : std::nullopt);
-      RenderPass pass{.isa = pool.isa()};
+      RenderPass pass;
+      pass.isa = pool.isa();
       pass.targets.colour[0] = &expected[0];
       pass.targets.depth = &depth[0];
       for (std::size_t i = 0; i < 2; ++i)
