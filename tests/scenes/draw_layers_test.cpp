@@ -176,8 +176,10 @@ TEST_CASE("layers of a scene: behind what is in focus or farther nothing is draw
 }
 
 TEST_CASE("layers of a scene of more objects than a pass takes have the bits of one pass") {
-  std::vector<double> depths;
-  for (int i = 0; i < 4000; ++i) depths.push_back(1.0 + (i * 7919 % 4001) / 100.0);
+  std::vector<double> depths(4000);
+  for (std::size_t i = 0; i < depths.size(); ++i) {
+    depths[i] = 1.0 + static_cast<double>(i * 7919 % 4001) / 100.0;
+  }
   Scene scene = squares_at(depths);
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const auto number = static_cast<double>(i);
