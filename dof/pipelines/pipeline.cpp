@@ -296,8 +296,9 @@ std::vector<UsualUniform> usual_uniforms() {
   for (const std::string_view name : {"iTime", "time", "u_time", "uTime"}) {
     all.push_back({name, {of(seconds)}});
   }
-  for (const std::string_view name : {"iFrame", "u_frame", "FrameCount"})
+  for (const std::string_view name : {"iFrame", "u_frame", "FrameCount"}) {
     all.push_back({name, {of(frame)}});
+  }
   all.push_back({"cameraNear", {of(near_m)}});
   all.push_back({"cameraFar", {of(far_m)}});
   return all;

@@ -79,9 +79,10 @@ ShaderSource vertex_text(const PipelinePass& pass) {
     const SpirvType& type = is_array ? module.type(whole.element) : whole;
     const std::string name = glsl_type(module, type);
     if (name.empty()) {
-      throw DriverError(pass.where + ": the input '" + of.name +
-                        "' is a structure; for drivers a vector, a matrix or an array of them "
-                        "would be right");
+      throw DriverError(
+          pass.where + ": the input '" + of.name +
+          "' is a structure or an array of arrays; for drivers a vector, a matrix or an "
+          "array of them would be right");
     }
     if (of.location >= 0) {
       head.append("layout(location = ").append(std::to_string(of.location)).append(") ");

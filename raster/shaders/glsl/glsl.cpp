@@ -117,13 +117,34 @@ void add_messages(std::string_view log, const std::string& name, Messages& messa
   throw ShaderError(why);
 }
 
+/// The length of what stands before all code, to the last `#extension` and its `#endif`.
+std::size_t length_of_head(std::string_view text) {
+  std::size_t head = 0;
+  int conditions = 0;
+  bool has_extension = false;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
+    std::string_view line = text.substr(begin, end - begin);
+    line.remove_prefix(std::min(line.find_first_not_of(" \t\r\n"), line.size()));
+    if (!line.empty() && !line.starts_with("#") && !line.starts_with("//")) break;
+    begin = end;
+    if (line.starts_with("#if")) ++conditions;
+    if (line.starts_with("#endif")) --conditions;
+    has_extension = has_extension || line.starts_with("#extension");
+    if (has_extension && conditions == 0) head = end;
+  }
+  return head;
+}
+
 /// Drivers know no names in `#line`, and want `#extension` before all else. They need no profile
 /// that the source does not name. Mesa's compute `mediump` of ES with halves; here it is binary32.
 std::string text_for_drivers(const GlslText& text, const std::string& source) {
   std::string extensions, rest;
   int conditions = 0;
   const auto add = [&](std::string_view from) {
+    const std::size_t behind_head = from.size() - (from == text.text ? length_of_head(from) : 0);
     while (!from.empty()) {
+      const bool is_in_head = from.size() > behind_head;
       std::string_view line = from.substr(0, from.find('\n'));
       from.remove_prefix(std::min(from.size(), line.size() + 1));
       if (line.starts_with("#line ")) line = line.substr(0, line.find(" \""));
@@ -133,9 +154,11 @@ std::string text_for_drivers(const GlslText& text, const std::string& source) {
       }
       if (line.starts_with("#if")) ++conditions;
       if (line.starts_with("#endif")) --conditions;
-      std::string& to = line.starts_with("#extension") && conditions == 0 ? extensions : rest;
-      to += line;
-      to += '\n';
+      const bool is_extension = line.starts_with("#extension") && conditions == 0;
+      const bool is_first =
+          is_extension || (is_in_head && line.starts_with("#") && !line.starts_with("#line"));
+      if (is_first) extensions.append(line).append("\n");
+      rest.append(is_first ? "" : line).append("\n");  // later lines keep their numbers
     }
   };
   for (const std::string* part : {&text.before, &text.text, &text.after}) add(*part);

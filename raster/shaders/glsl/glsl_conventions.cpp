@@ -138,6 +138,23 @@ bool has_array_type(std::span<const GlslToken> tokens) {
   return false;
 }
 
+/// What GLSL has had from 1.10 on and ES never: a text with it is of a desktop.
+bool has_desktop_words(std::span<const GlslToken> tokens) {
+  for (const char* const word :
+       {"sampler1D", "texture1D", "texture3D", "shadow1D", "shadow2D", "ftransform", "gl_Vertex",
+        "gl_Normal", "gl_Color", "gl_FrontColor", "gl_TexCoord", "gl_MultiTexCoord0",
+        "gl_ModelViewMatrix", "gl_ModelViewProjectionMatrix", "gl_NormalMatrix"}) {
+    if (uses(tokens, word)) return true;
+  }
+  for (std::size_t i = 2; i < tokens.size(); ++i) {
+    if (tokens[i - 2].text == "#" && tokens[i - 1].text == "extension" &&
+        is_raising(tokens[i].text)) {
+      return true;
+    }
+  }
+  return false;
+}
+
 /// Functions and types that ES 1.00 has not.
 bool has_es3_words(std::span<const GlslToken> tokens) {
   for (const char* const word :
@@ -177,7 +194,9 @@ GlslSurroundings shadertoy(const GlslSource& source, std::span<const GlslToken> 
                            const GlslVersion& version) {
   GlslSurroundings around;
   around.before = declarations("uniform", kShadertoyUniforms, source, tokens);
-  if (lacks(tokens, "HW_PERFORMANCE")) around.before += "#define HW_PERFORMANCE 1\n";
+  if (lacks(tokens, "HW_PERFORMANCE") && !source.defines.contains("HW_PERFORMANCE")) {
+    around.before += "#define HW_PERFORMANCE 1\n";
+  }
   if (has_function(tokens, "void", "main")) return around;
   const char* const color = version.has_outputs() ? "softfocus_color" : "gl_FragColor";
   if (version.has_outputs()) around.before += "out vec4 softfocus_color;\n";
@@ -278,7 +297,7 @@ GlslConvention recognise(ShaderStage stage, std::span<const GlslToken> tokens, b
   if (has_version) return GlslConvention::plain;
   if (uses(tokens, "vUv") || uses(tokens, "tDiffuse")) return GlslConvention::three;
   // It mixes both versions of ES, which three.js and its like allow.
-  if ((has_es3_words(tokens) || has_array_type(tokens)) &&
+  if ((has_es3_words(tokens) || has_array_type(tokens)) && !has_desktop_words(tokens) &&
       (uses(tokens, "varying") || uses(tokens, "gl_FragColor"))) {
     return GlslConvention::three;
   }
@@ -385,8 +404,9 @@ GlslSurroundings glsl_surroundings(GlslConvention convention, const GlslSource& 
   if (uses(tokens, "textureQueryLOD")) around.before += "#define textureQueryLOD textureQueryLod\n";
   if (version.is_es && version.number >= 300) around.before = renamed(tokens) + around.before;
   if (version.is_es && (is_web || convention != GlslConvention::plain)) {
-    if (uses(tokens, "sample") && convention != GlslConvention::plain)
+    if (uses(tokens, "sample") && convention != GlslConvention::plain) {
       around.before = "#define sample sample_\n" + around.before;
+    }
     std::string front = kWebExtensions;
     front += kPrecisions;
     if (version.number >= 300) {
@@ -396,7 +416,7 @@ GlslSurroundings glsl_surroundings(GlslConvention convention, const GlslSource& 
       bool uses_old = false;
       for (const std::string old : {"texture2D", "textureCube", "texture2DProj", "texture2DLod"}) {
         uses_old = uses_old || uses(tokens, old);
-        if (declares(tokens, old)) continue;
+        if (declares(tokens, old) || source.defines.contains(old)) continue;
         names.append("#define ").append(old) += " softfocus_" + old + "\n";
       }
       if (uses_old) {

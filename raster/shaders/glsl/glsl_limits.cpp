@@ -142,10 +142,10 @@ void check_limits(std::string_view text, const std::string& name) {
     sum.tokens += of.tokens;
     sum.cases += of.cases;
     sum.compared += of.compared;
-    if (sum.tokens > kMostTokens) {
+    if (!(sum.tokens <= kMostTokens)) {
       places.refuse(part.front(), "macros make more than 524288 words and signs of the text");
     }
-    if (sum.cases > kMostCases) places.refuse(part.front(), "more than 2000 cases");
+    if (!(sum.cases <= kMostCases)) places.refuse(part.front(), "more than 2000 cases");
     for (std::size_t i = 0; i < part.size(); ++i) {
       if (part[i].text == "{" && depth++ == 0 && i > 0 && part[i - 1].text == ")") ++functions;
       if (part[i].text == "}") depth = std::max(0, depth - 1);
@@ -157,7 +157,7 @@ void check_limits(std::string_view text, const std::string& name) {
       if (functions > kMostFunctions) places.refuse(part[i], "more than 2000 functions");
     }
   }
-  if (sum.compared * largest_value(macros, tokens, places) > kMostCompared) {
+  if (!(sum.compared * largest_value(macros, tokens, places) <= kMostCompared)) {
     throw ShaderError(name + ": too many comparisons for arrays or structures of that size");
   }
 }

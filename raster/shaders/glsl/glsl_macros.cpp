@@ -15,6 +15,12 @@ namespace {
 constexpr std::size_t kMostRounds = 200;
 constexpr double kEndless = std::numeric_limits<double>::infinity();
 
+/// Beyond all limits, and finite: infinity times 0 is none.
+double capped(double weight) {
+  constexpr double kMost = 1e60;
+  return weight < kMost ? weight : kMost;
+}
+
 bool is_word_or_number(const GlslToken& token) {
   return begins_word(token) || std::isdigit(static_cast<unsigned char>(token.text[0])) != 0;
 }
@@ -126,12 +132,15 @@ void GlslMacros::find_loose(std::span<const GlslToken> all) {
     for (std::size_t i = 0; i < of.body.size(); ++i) {
       open += of.body[i].text == "(" ? 1 : of.body[i].text == ")" ? -1 : 0;
       pastes = pastes || (i > 0 && of.body[i].text == "#" && of.body[i - 1].text == "#");
+      is_called_again_ = is_called_again_ ||
+                         (i > 0 && of.body[i].text == "(" && has(of.parameters, of.body[i - 1]));
     }
     // If a macro has one bracket of a pair, what stands between the two is no group here.
     if (open != 0 && uses_arguments(of)) is_endless_ = true;
   }
   if (pastes) find_pasted(all);
-  is_called_again_ = is_adjacent_ || !pasted_names_.empty() || 2 * names_.size() >= kMostRounds;
+  is_called_again_ = is_called_again_ || is_adjacent_ || !pasted_names_.empty() ||
+                     2 * names_.size() >= kMostRounds;
   for (std::size_t i = 1; i < all.size(); ++i) {
     is_called_again_ = is_called_again_ || (all[i - 1].text == ")" && all[i].text == "(");
   }
@@ -201,8 +210,8 @@ void GlslMacros::find_pasted(std::span<const GlslToken> all) {
 }
 
 void GlslMacros::weigh_all() {
-  // No macro is replaced within itself: two that name each other end as soon as those do that do
-  // not, unless brackets behind what one became call it again.
+  // No macro is replaced within itself, so two that name each other end in as many rounds as there
+  // are names, unless brackets behind what one became call it again.
   const std::size_t most = std::min(2 * names_.size() + 2, kMostRounds);
   std::size_t rounds = 0;
   for (bool grew = true; grew && rounds < most; ++rounds) {
@@ -221,6 +230,7 @@ bool GlslMacros::add(const Definition& of) {
   if (!made.ends_statements) made.operators = std::max(made.operators, made.worst);
   bool grew = false;
   const auto raise = [&](double& to, double from) {
+    from = capped(from);
     grew = grew || from > to;
     to = std::max(to, from);
   };
@@ -269,7 +279,8 @@ struct GlslMacros::Level {
 
   double all() const { return std::max(worst, operators + inside); }
   Uses repeated() const {
-    return {.all = before.all + uses.all * all(), .outside = before.outside + uses.outside * all()};
+    return {.all = capped(before.all + uses.all * all()),
+            .outside = capped(before.outside + uses.outside * all())};
   }
   void begin_argument(std::size_t number) {
     before = repeated();
@@ -339,7 +350,7 @@ GlslWeight GlslMacros::weigh(std::span<const GlslToken> tokens, std::string_view
       level.called = nullptr;
       level.uses = {.all = loose_times_, .outside = loose_times_};
     }
-    level.times = levels.back().times * level.uses.all;
+    level.times = capped(levels.back().times * level.uses.all);
     levels.push_back(level);
   };
   // Square brackets hold no comma of a macro's back: behind it any argument may be meant.
@@ -350,7 +361,7 @@ GlslWeight GlslMacros::weigh(std::span<const GlslToken> tokens, std::string_view
     constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
     const bool is_sure = of + 1 == levels.size() && levels[of].argument != kAny;
     levels[of].begin_argument(is_sure ? levels[of].argument + 1 : kAny);
-    levels[of].times = levels[of - 1].times * levels[of].uses.all;
+    levels[of].times = capped(levels[of - 1].times * levels[of].uses.all);
     for (std::size_t i = of + 1; i < levels.size(); ++i) levels[i].times = levels[of].times;
     return true;
   };

@@ -75,9 +75,10 @@ class GlslMacros {
   std::unordered_map<std::string_view, MacroName> names_{};
   /// A name that takes arguments stands somewhere without: anything in brackets may become its
   /// arguments.
-  bool is_loose_ = false;         ///< a macro's name stands without its brackets
-  bool is_adjacent_ = false;      ///< such a name may end what stands before a bracket's beginning
-  bool is_called_again_ = false;  ///< brackets may stand behind what a macro with some became
+  bool is_loose_ = false;
+  bool is_adjacent_ = false;  ///< such a name may end what stands before a bracket's beginning
+  /// What a macro with arguments has become may end in its own name, before brackets.
+  bool is_called_again_ = false;
   bool is_endless_ = false;
   std::unordered_set<std::string_view> pasted_names_{};  ///< that `##` may make
   GlslWeight pasted_{};                                  ///< the worst of them

@@ -173,7 +173,8 @@ const char* three_include(std::string_view name) {
   for (const std::string_view end : {"_pars_fragment", "_pars_vertex", "_fragment", "_vertex"}) {
     if (!name.ends_with(end)) continue;
     name.remove_suffix(end.size());
-    return std::ranges::find(kEmptyIncludes, name) != std::end(kEmptyIncludes) ? "" : nullptr;
+    const auto* const end_of_names = std::end(kEmptyIncludes);
+    return std::find(std::begin(kEmptyIncludes), end_of_names, name) != end_of_names ? "" : nullptr;
   }
   return nullptr;
 }

@@ -177,6 +177,13 @@ TEST_CASE("an extension that glslang has only in a later version is had") {
       "void main() { float a[2][2]; a[1][0] = 1.0; gl_FragColor = vec4(a[1][0]); }\n");
   CHECK(has_name(older, "a"));
   CHECK(older.text.starts_with("#version 130\n#extension GL_ARB_arrays_of_arrays : require\n"));
+  // For drivers one within #if stands before all code, too.
+  const auto guarded = compiled_text(
+      "#ifdef GL_OES_standard_derivatives\n#extension GL_OES_standard_derivatives : enable\n"
+      "#endif\nprecision mediump float;\nvoid main() { gl_FragColor = vec4(1.0); }\n");
+  const std::size_t condition = guarded.text.find("#ifdef GL_OES_standard_derivatives\n");
+  CHECK(condition < guarded.text.find("#extension GL_OES_standard_derivatives"));
+  CHECK(guarded.text.find("\n#endif\n", condition) < guarded.text.find("precision"));
 }
 
 TEST_CASE("texture2D() and its kin are there in core profiles before 4.20, as drivers have them") {
@@ -297,8 +304,9 @@ TEST_CASE("Shadertoy's text is recognised and gets its uniforms") {
   CHECK(has_line(shader, 3));
   CHECK(error_of_text("#if HW_PERFORMANCE == 1\n" + toy + "#endif\n") == "none");
   // Drivers let no function of ES 3.00 have that name.
-  CHECK(shader.text.find("#define texture2D softfocus_texture2D\n") <
-        shader.text.find("vec4 texture2D("));
+  const std::size_t function = shader.text.find("vec4 texture2D(");
+  CHECK(function != std::string::npos);
+  CHECK(shader.text.find("#define texture2D softfocus_texture2D\n") < function);
   CHECK(error_of_text("#define texture2D texture\n" + toy) == "none");
   CHECK(shader.text.find("\nprecision highp sampler2D;\n") != std::string::npos);
   // A text that declares them, as other programs want it.
@@ -311,6 +319,8 @@ TEST_CASE("Shadertoy's text is recognised and gets its uniforms") {
   source.text = "void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel2, vec3(1.0)); }\n";
   CHECK(error_with(source) != "none");
   source.samplers["iChannel2"] = "samplerCube";
+  CHECK(error_with(source) == "none");
+  source.defines = {{"HW_PERFORMANCE", "0"}, {"texture2D", "texture"}};
   CHECK(error_with(source) == "none");
 }
 
@@ -346,6 +356,15 @@ TEST_CASE("three.js' passes are recognised, of both versions of GLSL") {
                       "  float[2] w = float[2](1.0, 2.0);\n"
                       "  gl_FragColor = textureLod(t, at, 0.0) * w[1] + texture2D(t, at);\n}\n") ==
         GlslConvention::three);
+  // Of a desktop, though ES 3.00 has some of the words too.
+  for (const char* text :
+       {"uniform sampler3D noise;\nvarying vec2 p;\n"
+        "void main() { gl_FragColor = texture3D(noise, vec3(p, 0.5)); }\n",
+        "#extension GL_EXT_gpu_shader4 : enable\nuniform sampler2D t;\nvoid main() {\n"
+        "  gl_FragColor = texture2D(t, gl_TexCoord[0].xy) * float(uint(1));\n}\n"}) {
+    CHECK(error_of_text(text) == "none");
+    CHECK(convention_of(text) == GlslConvention::plain);
+  }
   GlslSource source;
   source.text =
       "#version 300 es\nout vec4 color;\nvoid main() { color = texture(tDiffuse, vUv); }\n";
@@ -480,6 +499,14 @@ TEST_CASE("macros that grow without end are refused before they are expanded") {
   const std::string again =
       "#version 330\nout vec4 o;\n#define A B\n#define B(x) ; ; ; ; A\nvoid main() { A";
   CHECK(error_of_text(again + "(1)(1)(1)(1); }\n").ends_with(too_many));
+  // Too many for binary64, of an argument that is nothing.
+  std::string beyond = "#version 330\n#define E\n#define G0(x) x x x x x x x x x x x x x x x x\n";
+  for (int i = 1; i < 260; ++i) {
+    beyond += "#define G" + std::to_string(i) + "(x)";
+    for (int k = 0; k < 16; ++k) beyond += " G" + std::to_string(i - 1) + "(x)";
+    beyond += "\n";
+  }
+  CHECK(error_of_text(beyond + "void main() { G259(E) }\n").ends_with(too_many));
   // Names that are made of words: CAT(A, 1) is A1.
   CHECK(error_of_text("#version 330\nout vec4 o;\n#define CAT(a, b) a##b\n#define A0 ;;;;\n"
                       "#define A1 CAT(A, 0) CAT(A, 0)\n#define A2 CAT(A, 1) CAT(A, 1)\n"
