@@ -6,7 +6,7 @@
 //   #define SOFTFOCUS_KERNELS "dof/gather.cpp"               // this file
 //   #include "raster/lanes/for_each_isa.inl"
 //   ... the scalar form ...
-//   ... SOFTFOCUS_KERNEL(isa, filter_row)(arguments) ...     // any isa but scalar
+//   ... SOFTFOCUS_KERNEL(isa, filter_row)(arguments) ...
 //   #else  // once a vector unit
 //   void filter_row(...) { ... }
 //   #endif

@@ -23,7 +23,7 @@
 namespace softfocus {
 
 enum class Isa : std::uint8_t {
-  scalar,    ///< no kernels: the scalar form of everything
+  scalar,    ///< the scalar form of what has one; kernels without one in four lanes
   baseline,  ///< 4 lanes, in what every CPU of the build has: SSE2, NEON on 64-bit Arm
   avx2,      ///< 8 lanes: AVX2, FMA and F16C
   avx512,    ///< 16 lanes: AVX-512 F, BW, DQ and VL beside those

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "raster/images/image.h"
-#include "raster/images/texel.h"
 #include "raster/passes/fullscreen_pass.h"
 #include "raster/temporal/split_texels.h"
 #include "raster/threads/loops.h"

@@ -352,8 +352,7 @@ void blend_transparent(PreparedScene& prepared, const CameraMatrices& camera, do
       });
 }
 
-// Of a pass, a million and a half triangles: what becomes of them is kept until its tiles are
-// drawn.
+// Of a pass, which keeps its triangles until its tiles are drawn: a million and a half of them.
 constexpr std::size_t kPassChunks = 1536;
 
 std::size_t chunks_of_scene(const Scene& scene) {
@@ -387,7 +386,8 @@ void draw_in_passes(const PreparedScene& prepared, const CameraMatrices& camera,
   }
   finish(pass, pool);
   pass.behind_before = behind_before;
-  if (behind_before) clear_behind(pass, clear_colour(scene), 1.0f, pool);
+  if (behind_before && has_layers(pass.targets))
+    clear_behind(pass, clear_colour(scene), 1.0f, pool);
 }
 
 // Into the targets that the scene's pass has, which are `layers`.

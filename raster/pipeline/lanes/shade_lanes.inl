@@ -115,14 +115,26 @@ SOFTFOCUS_INLINE std::uint32_t triangle_of(std::uint32_t entry) {
   return entry >> (kQuadBits + kQuadPixels);
 }
 
-// The pixels of a part of a block that lie left of a column and above a row of the tile. Part
-// `place` begins with that pixel.
+// The bits of a part's pixels with x < x_end and y < y_end, counted from the tile's first. `place`
+// is that of the part's first pixel.
 [[gnu::noinline]] inline unsigned pixels_before(std::size_t place, int x_end, int y_end) {
   const auto block = static_cast<int>(place / kBlockPixels);
   const auto part = static_cast<int>(place % kBlockPixels) / kLanes;
   const int x = block % kTileBlocks * kBlockSize + part * kPartColumns % kBlockSize;
   const int y = block / kTileBlocks * kBlockSize + part * kPartColumns / kBlockSize * kPartRows;
   return lane_bits((x + lane_x() < x_end) & (y + lane_y() < y_end));
+}
+
+// Which triangles of a run are seen.
+[[gnu::noinline]] inline std::vector<bool> find_seen(const TileLayer& layer,
+                                                     const VisibleRun& run) {
+  std::vector<bool> is_seen(static_cast<std::size_t>(run.end_id - run.first_id));
+  for (const std::int32_t id : layer.ids) {
+    if (id >= run.first_id && id < run.end_id) {
+      is_seen[static_cast<std::size_t>(id - run.first_id)] = true;
+    }
+  }
+  return is_seen;
 }
 
 // Not inlined: one copy for all stages.
@@ -132,7 +144,13 @@ SOFTFOCUS_INLINE std::uint32_t triangle_of(std::uint32_t entry) {
   const int height = tile.area.y_end - tile.area.y_begin;
   const bool is_cut = width < kTileSize || height < kTileSize;
   std::uint32_t* to = seen.entries.data();
+  // Of large triangles behind each other few are seen: then the others are not looked for.
+  constexpr int kMostLooks = 4 * kTilePixels;
+  int looks = 0;
+  std::vector<bool> is_seen;
   for (std::int32_t id = run.first_id; id < run.end_id; ++id) {
+    if (looks > kMostLooks && is_seen.empty()) is_seen = find_seen(layer, run);
+    if (!is_seen.empty() && !is_seen[static_cast<std::size_t>(id - run.first_id)]) continue;
     const auto& bounds = tile.triangles[static_cast<std::size_t>(id - 1)]->bounds;
     const int x_begin = std::max<int>(bounds[0] - tile.area.x_begin, 0) & -kPartColumns;
     const int y_begin = std::max<int>(bounds[1] - tile.area.y_begin, 0) & -kPartRows;
@@ -140,6 +158,7 @@ SOFTFOCUS_INLINE std::uint32_t triangle_of(std::uint32_t entry) {
     const int y_end = std::min<int>(bounds[3] - tile.area.y_begin, height);
     const auto triangle = static_cast<std::uint32_t>(id - run.first_id) << kQuadBits;
     const Ints own = splat(id);
+    looks += (x_end - x_begin) * (y_end - y_begin);
     for (int y = y_begin; y < y_end; y += kPartRows) {
       const std::size_t last = place_of_pixel((x_end - 1) & -kPartColumns, y);
       for (std::size_t place = place_of_pixel(x_begin, y); place <= last;
