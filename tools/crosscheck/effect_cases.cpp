@@ -96,8 +96,8 @@ void add_effect_cases(std::vector<Case>& cases) {
   add("no-knee", false, true, {{.threshold = 0.8f, .knee = 0.0f, .levels = 2}, 64, 64});
   add("all-light", false, true, {{.threshold = 0.0f, .knee = 0.0f, .levels = 2}, 64, 64});
   add("512x512", false, false, {{}, 512, 512});
-  add("any-bits", false, true, {{.levels = 3}, 64, 64, true});
-  add("any-bits-steady", false, true, {{.levels = 3, .is_steady = true}, 64, 64, true});
+  add("any-bits", true, true, {{.levels = 3}, 64, 64, true});
+  add("any-bits-steady", true, true, {{.levels = 3, .is_steady = true}, 64, 64, true});
   add("one-pixel", true, true, {{.levels = 3}, 1, 1});
   const auto add_gaussian = [&](const char* name, bool quick, bool slow_too, double sigma_px,
                                 int width, int height) {

@@ -181,8 +181,8 @@ void add_temporal_cases(std::vector<Case>& cases) {
   add_reverse("reverse-any-depth", false, true, {0.0f, true}, kSmall);
   add_reverse("reverse-cubic-61x43", true, true, {0.3f, true, true}, kSmall);
   add_reverse("reverse-cubic-512x512", false, false, {0.0f, true, true}, kLarge);
-  add_reverse("reverse-cubic-any-bits", false, true, {0.0f, false, true}, kAnyBits);
-  add_reverse("reverse-any-bits", false, true, {}, kAnyBits);
+  add_reverse("reverse-cubic-any-bits", true, true, {0.0f, false, true}, kAnyBits);
+  add_reverse("reverse-any-bits", true, true, {}, kAnyBits);
   add_reverse("reverse-512x512", false, false, {}, kLarge);
   add_reverse("reverse-one-pixel", true, true, {}, kOne);
   const auto add_forward = [&](const char* name, bool quick, bool slow_too,
@@ -191,7 +191,7 @@ void add_temporal_cases(std::vector<Case>& cases) {
         [=](const Bench& bench, Tally& tally) { forward_both(bench, tally, what); });
   };
   add_forward("forward-61x43", true, true, kSmall);
-  add_forward("forward-any-bits", false, true, kAnyBits);
+  add_forward("forward-any-bits", true, true, kAnyBits);
   add_forward("forward-512x512", false, false, kLarge);
   add_forward("forward-one-pixel", true, true, kOne);
   const auto add_refresh = [&](const char* name, bool quick, bool slow_too, int groups, int turn,
@@ -210,8 +210,8 @@ void add_temporal_cases(std::vector<Case>& cases) {
   add_average("extent-61x43", true, true, {0.05f, HistoryBox::extent}, kSmall);
   add_average("variance-61x43", true, true, {0.1f, HistoryBox::variance, 1.25f}, kSmall);
   add_average("variance-512x512", false, false, {}, kLarge);
-  add_average("extent-any-bits", false, true, {0.1f, HistoryBox::extent}, kAnyBits);
-  add_average("variance-any-bits", false, true, {}, kAnyBits);
+  add_average("extent-any-bits", true, true, {0.1f, HistoryBox::extent}, kAnyBits);
+  add_average("variance-any-bits", true, true, {}, kAnyBits);
   add_average("one-pixel", true, true, {}, kOne);
   const auto add_frame = [&](const char* name, bool quick, bool slow_too, const FrameEffect& effect,
                              const TemporalCase& what) {
@@ -228,7 +228,7 @@ void add_temporal_cases(std::vector<Case>& cases) {
   add_frame("frame-forward-filled", false, true, Reproject{.forward = true, .holes = filled},
             kSmall);
   add_frame("frame-forward-black", false, true, Reproject{.forward = true, .holes = black}, kSmall);
-  add_frame("frame-any-bits", false, true, Reproject{.holes = filled}, kAnyBits);
+  add_frame("frame-any-bits", true, true, Reproject{.holes = filled}, kAnyBits);
 }
 
 }  // namespace softfocus
