@@ -307,7 +307,7 @@ SOFTFOCUS_API int softfocus_set_uniform(softfocus_context* context, softfocus_sh
 
 /* From now on runs are given the uniform, and setting it compiles nothing: for one that changes
  * from run to run of small pictures. The program is somewhat slower, and its bits are the same. An
- * array is late as a whole. */
+ * array is late as a whole. Linking, if any, comes first. */
 SOFTFOCUS_API int softfocus_make_uniform_late(softfocus_context* context, softfocus_shader* shader,
                                               const char* name);
 

@@ -268,6 +268,7 @@ std::vector<double> time_frames(const BenchOptions& options, BenchWork& work, Ou
       filter(frame);
     }));
   }
+  set_frame(work, options, options.frame);  // what is reported
   return frames_ms;
 }
 
