@@ -352,9 +352,6 @@ void blend_transparent(PreparedScene& prepared, const CameraMatrices& camera, do
       });
 }
 
-// Of a pass, which keeps its triangles until its tiles are drawn: a million and a half of them.
-constexpr std::size_t kPassChunks = 1536;
-
 std::size_t chunks_of_scene(const Scene& scene) {
   std::size_t chunks = 0;
   for (const Object& object : scene.objects) chunks += chunks_of_mesh(scene.meshes[object.mesh]);

@@ -1,6 +1,7 @@
 #pragma once
 // A scene's frame: its list of draws, the draws, and the parts that methods work from.
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -78,6 +79,10 @@ struct PreparedScene {
   /// Told how many points of soft lights have been drawn by; may be empty.
   std::function<void(int points)> on_light_points = {};
 };
+
+/// Opaque surfaces of more chunks (kChunkTriangles) are drawn in several passes, the same bits: a
+/// pass keeps its triangles, here a million and a half, until its tiles are drawn.
+constexpr std::size_t kPassChunks = 1536;
 
 /// The scene must outlive the result. `pool` is the one that will draw.
 PreparedScene prepare_scene(const Scene& scene, const Profile& profile, ThreadPool& pool);

@@ -176,7 +176,7 @@ TEST_CASE("layers of a scene: behind what is in focus or farther nothing is draw
 }
 
 TEST_CASE("layers of a scene of more objects than a pass takes have the bits of one pass") {
-  std::vector<double> depths(4000);
+  std::vector<double> depths(kPassChunks * 5 / 2);
   for (std::size_t i = 0; i < depths.size(); ++i) {
     depths[i] = 1.0 + static_cast<double>(i * 7919 % 4001) / 100.0;
   }
@@ -189,13 +189,17 @@ TEST_CASE("layers of a scene of more objects than a pass takes have the bits of 
         scene.objects[i].position.z * (std::fmod(0.37 * number, 1.0) - 0.5);
     scene.objects[i].position.y =
         scene.objects[i].position.z * (std::fmod(0.71 * number, 0.6) - 0.3);
+    if (i % 3 == 0) scene.materials[i].lit = true;
+    if (i % 5 == 0) scene.materials[i].opacity = 0.5f;
   }
+  scene.lights.emplace_back().position_or_direction = {0, 0, 1};
   const Camera& view = scene.camera;
   const CameraMatrices camera = camera_matrices(view, 0.0, kAcross, kDown);
-  constexpr double kLimitM = 8.0;
+  constexpr double kLimitM = 2.0;
   const double before =
       view.far_m * (kLimitM - view.near_m) / (kLimitM * (view.far_m - view.near_m));
   for (const Isa isa : {Isa::scalar, widest_isa()}) {
+    std::vector<Image> unlimited;
     for (const bool is_limited : {false, true}) {
       CAPTURE(isa_name(isa));
       CAPTURE(is_limited);
@@ -216,6 +220,8 @@ TEST_CASE("layers of a scene of more objects than a pass takes have the bits of 
       record_scene(prepared, camera, 0.0, pass);
       finish(pass, pool);
       check_layers(layers, expected);
+      if (is_limited) CHECK(!equal(layers[1], unlimited[1]));
+      unlimited = layers;
     }
   }
 }
