@@ -53,7 +53,8 @@ TEST_CASE("anisotropic diffusion gives its oracle's bits, at any size and radius
   check_oracle(random_scene_image(53, 31, 2), 100.0f, {1e5f, 2.0f});
 }
 
-TEST_CASE("anisotropic diffusion gives its oracle's bits where most of a picture is in focus") {
+TEST_CASE("anisotropic diffusion gives its oracle's bits where most of a picture is in focus" *
+          doctest::test_suite("long")) {
   Image scene = random_scene_image(301, 157, 3);
   for (const int at : {0, 94, 96, 150}) {
     set_depth(scene, [&](int x, int y) {

@@ -171,7 +171,8 @@ TEST_CASE("the filters' kernels give the oracles' bits for any depths") {
   }
 }
 
-TEST_CASE("the filters' kernels give the oracles' bits where part of a picture is in focus") {
+TEST_CASE("the filters' kernels give the oracles' bits where part of a picture is in focus" *
+          doctest::test_suite("long")) {
   struct Island {
     int x, y, size;
   };

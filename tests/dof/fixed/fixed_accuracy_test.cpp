@@ -176,7 +176,8 @@ TEST_CASE("fixed point: circles of radius 32 are within 55 dB and 2 levels of bi
   check_lenses(32, lenses);
 }
 
-TEST_CASE("fixed point: any leakage and broken radii are within 55 dB and 2 levels of binary64") {
+TEST_CASE("fixed point: any leakage and broken radii are within 55 dB and 2 levels of binary64" *
+          doctest::test_suite("long")) {
   for (const std::uint32_t radius : {2u, 8u, 16u}) check_lenses(radius, unusual_lenses);
 }
 

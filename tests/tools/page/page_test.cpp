@@ -241,7 +241,8 @@ TEST_CASE("every scene's frame has the picture_hash of the page's command" *
   }
 }
 
-TEST_CASE("the truth is accumulation's picture of many views, and its distance the mean FLIP") {
+TEST_CASE("the truth is accumulation's picture of many views, and its distance the mean FLIP" *
+          doctest::test_suite("long")) {
   Page page;
   open(page, "clutter");
   hash_of(page, R"("size":[40,24])");
@@ -298,7 +299,8 @@ TEST_CASE("a case of the atlas has its own circles, and a wider lens larger ones
   CHECK(truth.at("done").boolean());
 }
 
-TEST_CASE("every case opens at its telling severity and makes a frame") {
+TEST_CASE("every case opens at its telling severity and makes a frame" *
+          doctest::test_suite("long")) {
   Page page;
   const Json listed = ask_well(page, R"({"do":"scenes"})");
   for (const Json& known : listed.at("cases").values()) {
