@@ -176,7 +176,7 @@ TEST_CASE("layers of a scene: behind what is in focus or farther nothing is draw
 }
 
 TEST_CASE("layers of a scene of more objects than a pass takes have the bits of one pass") {
-  std::vector<double> depths(kPassChunks * 5 / 2);
+  std::vector<double> depths(kPassChunks * 9 / 8);
   for (std::size_t i = 0; i < depths.size(); ++i) {
     depths[i] = 1.0 + static_cast<double>(i * 7919 % 4001) / 100.0;
   }
