@@ -71,7 +71,7 @@ TEST_CASE("cube-room's shadows are those of every ray against every triangle") {
   check_errors(errors_of(shadowed("cube-room"), 64, 40, false));
 }
 
-TEST_CASE("figures' shadows are those of rays") {
+TEST_CASE("figures' shadows are those of rays" * doctest::test_suite("long")) {
   check_errors(errors_of(shadowed("figures"), 160, 120, true));
 }
 

@@ -106,7 +106,7 @@ TEST_CASE("the golden hashes of a branch are those of its groups") {
 }
 
 TEST_CASE("a frame's golden hash does not depend on the number of threads" *
-          doctest::test_suite("threads")) {
+          doctest::test_suite("threads long")) {
   const auto check = [&](std::string_view scene, int threads) {
     CAPTURE(scene);
     ThreadPool pool(threads);
