@@ -503,7 +503,7 @@ Scalars Lowering::sample_result(Call& call, const SpirvInstruction& in, ShaderRe
   if (of->is_arrayed && of->dim == SpirvDim::cube) {
     refuse("samplerCubeArray is not supported; samplerCube and sampler2DArray are");
   }
-  // Read as a sampler2DArray, where readers know the middle of a line's rows.
+  // Sampled as a sampler2DArray.
   const bool is_line_array = of->is_arrayed && of->dim == SpirvDim::one;
 
   ShaderSample sample{.dim = of->dim,
@@ -534,7 +534,7 @@ Scalars Lowering::sample_result(Call& call, const SpirvInstruction& in, ShaderRe
     std::copy_n(at.begin(), places, sample.at.begin());
     if (is_line_array && places == 2) {
       sample.at[2] = sample.at[1];
-      sample.at[1] = whole(0);  // whose differences are none
+      sample.at[1] = whole(0);  // samplers take the middle; the level of detail needs a constant
     }
     const bool compares =
         in.op == image_sample_dref_implicit_lod || in.op == image_sample_dref_explicit_lod ||

@@ -184,8 +184,10 @@ TEST_CASE("arrays sampled in lanes have the bits of those sampled one by one") {
   check_sliced_lanes(TextureShape::array, {{8, 4, 5}, {5, 7, 3}, {1, 1, 1}});
 }
 
-TEST_CASE("so have volumes" * doctest::test_suite("long")) {
-  check_sliced_lanes(TextureShape::volume, {{8, 4, 16}, {5, 7, 6}, {1, 3, 1}});
+TEST_CASE("so have volumes") { check_sliced_lanes(TextureShape::volume, {{5, 7, 6}, {1, 3, 1}}); }
+
+TEST_CASE("so have deeper volumes" * doctest::test_suite("long")) {
+  check_sliced_lanes(TextureShape::volume, {{8, 4, 16}});
 }
 
 TEST_CASE("so have cubes, at their edges and corners, too") {
