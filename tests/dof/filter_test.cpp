@@ -9,6 +9,7 @@
 #include "dof/two_pass/two_pass.h"
 #include "dof/weights.h"
 #include "raster/images/texel.h"
+#include "tests/support/sanitizers.h"
 #include "tests/support/test_images.h"
 
 using namespace softfocus;
@@ -160,6 +161,7 @@ TEST_CASE("the filters equal their oracles to the bit") {
     for (const NamedProfile& known : profiles()) {
       const Profile& profile = known.profile;
       for (const int size : {1, 2, 33}) {
+        if (kHasSanitizers && size == 33 && &known != &profiles().front()) continue;
         const Image scene = random_scene_image(size, 70 - size, 3);
         for (const float max_coc : {0.0f, 0.5f, 1.0f, 7.25f, 40.0f}) {
           const DofSettings s = settings(40.0f, max_coc);
@@ -172,7 +174,7 @@ TEST_CASE("the filters equal their oracles to the bit") {
 }
 
 TEST_CASE("the filters give the same bits for any number of threads" *
-          doctest::test_suite("threads")) {
+          doctest::test_suite("threads long")) {
   const Image scene = random_scene_image(203, 101, 4);
   for (const Filter filter : {two_pass, one_pass}) {
     ThreadPool one(1);

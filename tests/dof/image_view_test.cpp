@@ -13,6 +13,7 @@
 #include "dof/focus_map.h"
 #include "dof/one_pass/one_pass.h"
 #include "dof/two_pass/two_pass.h"
+#include "tests/support/sanitizers.h"
 #include "tests/support/test_images.h"
 
 using namespace softfocus;
@@ -115,7 +116,9 @@ Image scene_image(int width, int height) {
 struct Size {
   int width, height;
 };
-constexpr std::array kSizes{Size{1, 1}, Size{3, 5}, Size{69, 44}, Size{64, 37}};
+const std::vector<Size> kSizes = kHasSanitizers
+                                     ? std::vector<Size>{{3, 5}, {45, 22}}
+                                     : std::vector<Size>{{1, 1}, {3, 5}, {69, 44}, {64, 37}};
 
 }  // namespace
 
@@ -183,8 +186,8 @@ TEST_CASE("pictures larger than caches keep to their place in a caller's memory"
   // Rows on cache lines, as filters want them that write past the caches, and not.
   const Image scene = scene_image(4104, 520);
   ThreadPool pool(2);
-  const auto filters = {two_pass, one_pass};
-  for (const auto filter : filters) {
+  for (const auto filter : {two_pass, one_pass}) {
+    if (kHasSanitizers && filter == one_pass) continue;  // two-pass alone writes past them
     DofSettings settings = kSettings;
     settings.max_coc_px = 2.5f;
     Image expected = make_image(Format::rgba16f, 4104, 520);

@@ -12,6 +12,7 @@
 
 #include "dof/dof.h"
 #include "raster/images/texel.h"
+#include "tests/support/sanitizers.h"
 #include "tests/support/test_images.h"
 
 using namespace softfocus;
@@ -262,7 +263,7 @@ TEST_CASE("every method gives a mirrored picture's result mirrored, a turned one
 }
 
 TEST_CASE("every method gives the same bits for any number of threads" *
-          doctest::test_suite("threads")) {
+          doctest::test_suite("threads long")) {
   const Image scene = random_scene_image(150, 71, 6);
   for (const Claims& claims : kClaims) {
     ThreadPool one(1);
@@ -286,6 +287,7 @@ TEST_CASE("every method gives the same bits on every vector unit, at any size") 
       for (const float max_coc : {0.0f, 0.7f, 7.25f, 1024.0f}) {
         // Far past a small picture is as far as past a larger one.
         if (max_coc > 64.0f && size.width * size.height > 256) continue;
+        if (kHasSanitizers && size.width * size.height > 2000) continue;
         ThreadPool scalar(2, Isa::scalar);
         const Image expected = filtered(claims.name, scene, settings(40.0f, max_coc), scalar);
         for (const Isa isa : available_isas().subspan(1)) {

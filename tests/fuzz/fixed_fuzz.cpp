@@ -91,7 +91,7 @@ void check_halves(FuzzNumbers& input, const Settings& settings, const std::vecto
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int softfocus::fuzz_fixed(const std::uint8_t* data, std::size_t size) {
   FuzzNumbers input{data, size};
   const Camera camera{input.next<std::uint32_t>(), input.next<std::uint32_t>(),
                       input.next<std::uint32_t>(), input.next<std::uint32_t>(),

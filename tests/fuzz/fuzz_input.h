@@ -1,5 +1,6 @@
 #pragma once
-// Shared by the fuzz targets: the input as a file or as numbers, and claims that must hold.
+// The fuzz targets, and what they share: the input as a file or as numbers, and claims that must
+// hold.
 
 #include <algorithm>
 #include <cstddef>
@@ -19,6 +20,8 @@
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
 
 namespace softfocus {
+
+struct PictureFileReader;
 
 /// Writes the bytes to this process's own file of that extension, which its end removes, and
 /// returns its path.
@@ -84,6 +87,27 @@ inline std::size_t mutate_in_place(std::uint8_t* data, std::size_t size, std::si
   LLVMFuzzerMutate(data + random() % size, 1, 1);
   return size;
 }
+
+/// Random words of SPIR-V, damaged where they mean something.
+std::size_t mutate_spirv(std::uint8_t* data, std::size_t size, std::size_t most, unsigned seed);
+
+// What each target does with an input; the head of its file says what it claims. They return as
+// LLVMFuzzerTestOneInput() does: -1 keeps the input out of the corpus.
+int fuzz_fixed(const std::uint8_t* data, std::size_t size);
+int fuzz_glsl(const std::uint8_t* data, std::size_t size);
+int fuzz_mtl(const std::uint8_t* data, std::size_t size);
+int fuzz_notes(const std::uint8_t* data, std::size_t size);
+int fuzz_obj(const std::uint8_t* data, std::size_t size);
+int fuzz_options(const std::uint8_t* data, std::size_t size);
+int fuzz_picture(const PictureFileReader& reader, const std::uint8_t* data, std::size_t size);
+int fuzz_profile(const std::uint8_t* data, std::size_t size);
+int fuzz_refocus(const std::uint8_t* data, std::size_t size);
+int fuzz_relief(const std::uint8_t* data, std::size_t size);
+int fuzz_scene(const std::uint8_t* data, std::size_t size);
+int fuzz_sequence(const std::uint8_t* data, std::size_t size);
+int fuzz_shader(const std::uint8_t* data, std::size_t size);
+int fuzz_sums(const std::uint8_t* data, std::size_t size);
+int fuzz_texture(const std::uint8_t* data, std::size_t size);
 
 /// Ends the program, which is a finding, unless it holds.
 inline void demand(bool holds) {

@@ -6,8 +6,7 @@
 #include "tests/fuzz/fuzz_input.h"
 #include "tests/support/shader_checks.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace softfocus;
+int softfocus::fuzz_glsl(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const GlslSource source{
       .stage = data[0] / 6 % 8 == 7 ? ShaderStage::vertex : ShaderStage::fragment,

@@ -4,8 +4,7 @@
 #include "scenes/load/mtl_file.h"
 #include "tests/fuzz/fuzz_input.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace softfocus;
+int softfocus::fuzz_mtl(const std::uint8_t* data, std::size_t size) {
   try {
     MtlMaterials materials;
     load_mtl(fuzz_file(data, size, ".mtl"), materials);

@@ -6,8 +6,7 @@
 #include "tools/files/json.h"
 #include "tools/pictures/picture_notes.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace softfocus;
+int softfocus::fuzz_notes(const std::uint8_t* data, std::size_t size) {
   const std::string_view text{reinterpret_cast<const char*>(data), size};
   if (const auto json = parse_json(text)) {
     const std::string written = json_text(*json);

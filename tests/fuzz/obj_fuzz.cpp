@@ -5,8 +5,7 @@
 #include "scenes/load/model_scene.h"
 #include "tests/fuzz/fuzz_input.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace softfocus;
+int softfocus::fuzz_obj(const std::uint8_t* data, std::size_t size) {
   try {
     const Scene scene = make_model_scene(load_obj_model(fuzz_file(data, size, ".obj")), "fuzz");
     ThreadPool pool(1);

@@ -26,13 +26,9 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerInitialize(int*, char***) {
+int softfocus::fuzz_options(const std::uint8_t* data, std::size_t size) {
   std::cout.rdbuf(nullptr);  // where --help goes
   std::cerr.rdbuf(nullptr);
-  return 0;
-}
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::vector<std::string> arguments = lines_of({reinterpret_cast<const char*>(data), size});
   arguments.insert(arguments.begin(), "refocus");
   const auto program = make_program("softfocus", "0", "");

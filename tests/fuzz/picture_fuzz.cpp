@@ -1,5 +1,5 @@
-// Any bytes as a picture of one kind, SOFTFOCUS_FUZZED_READER: a picture with its notes, or the
-// error that is meant for the user.
+// Any bytes as a picture of one kind: a picture with its notes, or the error that is meant for the
+// user.
 
 #include <cstring>
 #include <vector>
@@ -16,7 +16,7 @@ namespace {
 using namespace softfocus;
 
 /// Larger pictures cost time and find nothing that these do not.
-constexpr std::int64_t kMostPixels = 1 << 16;
+constexpr std::int64_t kMostPicturePixels = 1 << 16;
 
 /// Gives each chunk of a PNG its checksum, which no change by chance would meet.
 Bytes with_checksums(const Bytes& png) {
@@ -44,10 +44,10 @@ void read_lower_half(const PictureFile& file) {
   rows_of(file, {0})(lower_half, values);
 }
 
-void read_all(const Bytes& bytes) {
+void read_all(const PictureFileReader& reader, const Bytes& bytes) {
   const PictureFile file = open_picture_file(bytes, "fuzz");
-  demand(file.reader == &SOFTFOCUS_FUZZED_READER && file.width >= 1 && file.height >= 1);
-  if (std::int64_t{file.width} * file.height > kMostPixels) return;
+  demand(file.reader == &reader && file.width >= 1 && file.height >= 1);
+  if (std::int64_t{file.width} * file.height > kMostPicturePixels) return;
   const auto pixels = static_cast<std::size_t>(file.width) * static_cast<std::size_t>(file.height);
   for (std::size_t i = 0; i < file.planes.size() && i < 8; ++i) {
     demand(read_planes(file, {&i, 1}, 0.0f)[0].size() == pixels);
@@ -60,18 +60,14 @@ void read_all(const Bytes& bytes) {
 
 }  // namespace
 
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
-                                               std::size_t most, unsigned seed) {
-  return softfocus::mutate_in_place(data, size, most, seed);
-}
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int softfocus::fuzz_picture(const PictureFileReader& reader, const std::uint8_t* data,
+                            std::size_t size) {
   const auto* start = reinterpret_cast<const std::byte*>(data);
   Bytes bytes{start, start + size};
-  if (!SOFTFOCUS_FUZZED_READER.is(bytes)) return -1;
+  if (!reader.is(bytes)) return -1;
   if (is_png(bytes)) bytes = with_checksums(bytes);
   try {
-    read_all(bytes);
+    read_all(reader, bytes);
     return counted(true, data, size);
   } catch (const FileError&) {
     return counted(false, data, size);

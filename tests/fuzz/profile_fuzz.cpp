@@ -4,8 +4,7 @@
 #include "tests/fuzz/fuzz_input.h"
 #include "tools/files/profile_file.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace softfocus;
+int softfocus::fuzz_profile(const std::uint8_t* data, std::size_t size) {
   try {
     const ChosenProfile profile = load_profile(fuzz_file(data, size, ".toml"));
     const std::string text = profile_text(profile, "");

@@ -129,7 +129,7 @@ void refocus_all(FuzzNumbers& input, const RefocusOptions& options) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int softfocus::fuzz_refocus(const std::uint8_t* data, std::size_t size) {
   FuzzNumbers input{data, size};
   std::vector<std::string> arguments{"refocus", "colour.npy", "depth.pfm"};
   const auto add_of = [&](const auto& table) {

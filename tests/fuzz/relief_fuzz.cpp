@@ -14,7 +14,7 @@ namespace {
 using namespace softfocus;
 
 /// Larger ones cost time and find nothing that these do not.
-constexpr std::int64_t kMostTexels = 1 << 14;
+constexpr std::int64_t kMostReliefTexels = 1 << 14;
 
 /// The sum over all, which no change by chance would meet.
 std::string with_sum(const std::uint8_t* data, std::size_t size) {
@@ -46,12 +46,7 @@ void warp_it(const ReliefTexture& relief) {
 
 }  // namespace
 
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
-                                               std::size_t most, unsigned seed) {
-  return softfocus::mutate_in_place(data, size, most, seed);
-}
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int softfocus::fuzz_relief(const std::uint8_t* data, std::size_t size) {
   try {
     const ReliefTexture relief = decode_relief(with_sum(data, size), "fuzz");
     const auto texels =
@@ -59,7 +54,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     demand(relief.depths.size() == texels && relief.colours.size() == texels);
     demand(relief.normals.empty() || relief.normals.size() == texels);
     demand(encode_relief(relief).size() == size);
-    if (std::int64_t{relief.width} * relief.height <= kMostTexels) warp_it(relief);
+    if (std::int64_t{relief.width} * relief.height <= kMostReliefTexels) warp_it(relief);
   } catch (const FileError&) {
     return counted(false, data, size);
   }

@@ -36,8 +36,7 @@ std::string with_small_sizes(std::string text) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace softfocus;
+int softfocus::fuzz_scene(const std::uint8_t* data, std::size_t size) {
   constexpr std::size_t kMostTriangles = 20000;
   try {
     const std::string text = with_small_sizes({reinterpret_cast<const char*>(data), size});

@@ -35,7 +35,7 @@ void check_name(const std::string& text) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+int softfocus::fuzz_sequence(const std::uint8_t* data, std::size_t size) {
   const std::string text{reinterpret_cast<const char*>(data), size};
   if (const auto line = parse_journal_line(text)) demand(journal_line(*line) == text + "\n");
   check_range(text);

@@ -6,9 +6,8 @@
 #include "tests/support/random_spirv.h"
 #include "tests/support/shader_checks.h"
 
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
-                                               std::size_t most, unsigned seed) {
-  using namespace softfocus;
+std::size_t softfocus::mutate_spirv(std::uint8_t* data, std::size_t size, std::size_t most,
+                                    unsigned seed) {
   if (seed % 8 == 0) return LLVMFuzzerMutate(data, size, most);
   test::Random random{seed};
   std::vector<std::uint32_t> words(size / 4);
@@ -25,8 +24,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   return size;
 }
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace softfocus;
+int softfocus::fuzz_shader(const std::uint8_t* data, std::size_t size) {
   try {
     test::run_any_shader(spirv_words(std::as_bytes(std::span{data, size})), Isa::baseline);
     return counted(true, data, size);

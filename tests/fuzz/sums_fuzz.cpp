@@ -8,13 +8,7 @@
 #include "tools/files/byte_order.h"
 #include "tools/pictures/sums_file.h"
 
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
-                                               std::size_t most, unsigned seed) {
-  return softfocus::mutate_in_place(data, size, most, seed);
-}
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace softfocus;
+int softfocus::fuzz_sums(const std::uint8_t* data, std::size_t size) {
   constexpr std::int64_t kMostPixels = 1 << 16;
   std::vector<std::byte> bytes;
   // The checksum at the end, which no change by chance would meet.

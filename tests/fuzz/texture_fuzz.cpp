@@ -7,8 +7,7 @@
 #include "scenes/files/texture_file.h"
 #include "tests/fuzz/fuzz_input.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace softfocus;
+int softfocus::fuzz_texture(const std::uint8_t* data, std::size_t size) {
   constexpr std::int64_t kMostTexels = 1 << 16;
   int width = 0, height = 0, channels = 0;
   const bool is_sound = !has_overfull_huffman_table({reinterpret_cast<const char*>(data), size});

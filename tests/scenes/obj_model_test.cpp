@@ -123,7 +123,7 @@ TEST_CASE("a line that goes on behind a backslash is in one piece") {
   }
 }
 
-TEST_CASE("the first error of a long text is told, with its line") {
+TEST_CASE("the first error of a long text is told, with its line" * doctest::test_suite("long")) {
   std::string text = long_text();
   const auto line_of = [&](std::size_t place) {
     return std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(place), '\n') + 1;

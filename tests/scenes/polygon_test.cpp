@@ -9,6 +9,7 @@
 #include "raster/numbers/exact_math.h"
 #include "raster/numbers/random_bits.h"
 #include "raster/numbers/vector_math.h"
+#include "tests/support/sanitizers.h"
 
 using namespace softfocus;
 
@@ -223,7 +224,7 @@ TEST_CASE("a round polygon of a thousand corners is covered") {
 
 TEST_CASE("outlines that touch themselves have the area of the even-odd rule") {
   int holes = 0;
-  for (std::uint64_t seed = 0; seed < 5000; ++seed) {
+  for (std::uint64_t seed = 0; seed < fewer<std::uint64_t>(5000); ++seed) {
     CAPTURE(seed);
     const Polygon outline = random_outline(seed);
     const auto triangles = triangulate_polygon(outline);
@@ -256,7 +257,7 @@ TEST_CASE("outlines that touch themselves have the area of the even-odd rule") {
       holes += covered;
     }
   }
-  CHECK(holes > 10000);
+  CHECK(holes > fewer(10000));
 }
 
 namespace {
@@ -301,7 +302,7 @@ bool is_sound(const Polygon& polygon) {
 
 TEST_CASE("outlines on a grid of 5x5 places, which touch themselves often, are covered") {
   int sound = 0;
-  for (std::uint64_t seed = 0; seed < 60000; ++seed) {
+  for (std::uint64_t seed = 0; seed < fewer<std::uint64_t>(60000); ++seed) {
     CAPTURE(seed);
     Polygon outline;
     const std::uint64_t count = 5 + seed % 5;
@@ -317,7 +318,7 @@ TEST_CASE("outlines on a grid of 5x5 places, which touch themselves often, are c
     }
     CHECK(sum == doctest::Approx(even_odd_area(outline)));
   }
-  CHECK(sound > 2000);
+  CHECK(sound > fewer(2000));
 }
 
 TEST_CASE("what crosses itself or has no area still gives corners - 2 triangles") {

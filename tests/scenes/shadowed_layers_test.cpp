@@ -181,7 +181,8 @@ MapErrors map_errors_of(const ShadowMapSettings& settings) {
 
 }  // namespace
 
-TEST_CASE("cube-room's map is wrong near edges alone, and less so if it is larger") {
+TEST_CASE("cube-room's map is wrong near edges alone, and less so if it is larger" *
+          doctest::test_suite("long")) {
   const MapErrors small = map_errors_of({.size = 128, .bias = 0.25, .slope_bias = 1.0});
   const MapErrors large = map_errors_of({.size = 1024, .bias = 0.25, .slope_bias = 1.0});
   CHECK(small.in_shadow > 1000);

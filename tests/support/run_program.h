@@ -24,16 +24,6 @@
 
 namespace softfocus {
 
-/// Whether a program takes no more memory than it asks for: one with sanitizers does.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-inline constexpr bool kCountsMemory = false;
-#elif defined(__has_feature)
-inline constexpr bool kCountsMemory =
-    !__has_feature(address_sanitizer) && !__has_feature(thread_sanitizer);
-#else
-inline constexpr bool kCountsMemory = true;
-#endif
-
 /// How a run ended and what it wrote.
 struct ProgramRun {
   int status = -1;  ///< the exit status; -1 if a signal ended it

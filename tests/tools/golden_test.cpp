@@ -118,7 +118,7 @@ TEST_CASE("a frame's golden hash does not depend on the number of threads" *
   check("cube-room", 3);  // what moves, and textures
 }
 
-TEST_CASE("a golden hash tells one profile's frame from another's") {
+TEST_CASE("a golden hash tells one profile's frame from another's" * doctest::test_suite("long")) {
   std::map<std::string, std::vector<std::uint16_t>> ends;
   for (const HashGroup& group : expected_groups()) ends[group.name] = group.ends;
   int frames = 0;

@@ -318,11 +318,11 @@ void add_sampling_options(CLI::App& parser, Sampling& sampling) {
       });
   add_parameter(parser, parameter::kViews, sampling.drawn_views);
   add_flag(parser, "--jitter",
-           "Of the same: look from all over each pixel, not from its centre alone",
+           "Not of warped-accumulation: look from all over each pixel, not from its centre alone",
            sampling.jitter);
   add_parameter(parser, parameter::kUntil, "", sampling.until);
   add_parameter(parser, parameter::kShutter, "the scene's, mostly 0", sampling.shutter_frames);
-  add_blades_option(parser, "Of the same and of scatter-aperture: an aperture",
+  add_blades_option(parser, "Of these methods and of scatter-aperture: an aperture",
                     sampling.aperture.blades);
 }
 

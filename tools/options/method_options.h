@@ -24,7 +24,8 @@ inline constexpr Parameter kViews{"views",
     "Of warped-accumulation: views that are drawn; the others are warped from them",
     1, kMostDrawnViews, Sampling{}.drawn_views, "", "V", "", 1};
 inline constexpr Parameter kUntil{"until",
-    "Of the same: stop when two half-sets of samples differ by this RMS of linear values",
+    "Not of warped-accumulation: stop when two half-sets of samples differ by this RMS of linear "
+    "values",
     kNearlyNothing, kLargest, 0.0, "", "ERROR"};
 // clang-format on
 }  // namespace parameter

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/support/raster_helpers.h"
+#include "tests/support/sanitizers.h"
 
 using namespace softfocus;
 
@@ -173,7 +174,7 @@ TEST_CASE("clipping makes new vertices only on a plane, and leaves none outside"
   test::Random random{51};
   int wrong = 0;
   for (const float g : {1.0f, 2.0f, 16.0f}) {
-    for (int i = 0; i < 20'000; ++i) {
+    for (int i = 0; i < fewer(20'000); ++i) {
       const Corners corners = some_triangle(random, g);
       const Clipped clipped = clip(corners, g);
       const double tolerance = size_of(corners) * std::max(1.0f, g) * 8 * 0x1p-24;
@@ -198,7 +199,7 @@ TEST_CASE(
   test::Random random{52};
   std::map<unsigned, int> kept_by_planes;
   double worst = 0.0;
-  for (int i = 0; i < 200'000; ++i) {
+  for (int i = 0; i < fewer(200'000); ++i) {
     const Corners corners = some_triangle(random, 1.0f);
     const Clipped clipped = clip(corners, 1.0f);
     const double exact = window_area(clip_in_double(positions(corners), 1.0));
@@ -216,7 +217,7 @@ TEST_CASE("a triangle from behind the eye is cut at the near plane") {
   test::Random random{53};
   int cut = 0;
   double worst = 0.0;
-  for (int i = 0; i < 50'000; ++i) {
+  for (int i = 0; i < fewer(50'000); ++i) {
     Corners corners{};
     for (glm::vec4& corner : corners) {
       const float distance = random.between(-6.0f, 9.0f);
@@ -233,14 +234,14 @@ TEST_CASE("a triangle from behind the eye is cut at the near plane") {
     worst =
         std::max(worst, std::fabs(window_area(positions(clipped.polygon)) - window_area(exact)));
   }
-  CHECK(cut > 10'000);
+  CHECK(cut > fewer(10'000));
   CHECK(worst < 1e-3);  // of 64
 }
 
 TEST_CASE("a triangle wholly outside of one plane vanishes") {
   test::Random random{54};
   int wrong = 0;
-  for (int i = 0; i < 20'000; ++i) {
+  for (int i = 0; i < fewer(20'000); ++i) {
     const Corners corners = some_triangle(random, 2.0f);
     unsigned all = ~0u;
     for (const glm::vec4& corner : corners) all &= clip_code(corner, 2.0f);
@@ -263,7 +264,7 @@ TEST_CASE("two triangles with a common edge get identical new vertices on it") {
   int shared = 0;
   int different = 0;
   for (const float g : {1.0f, 2.0f, 16.0f}) {
-    for (int i = 0; i < 20'000; ++i) {
+    for (int i = 0; i < fewer(20'000); ++i) {
       const Corners corners = some_triangle(random, g);
       const glm::vec4 other = some_point(random, g);
       // The varying is 0 on the edge and nowhere else.
@@ -284,7 +285,7 @@ TEST_CASE("two triangles with a common edge get identical new vertices on it") {
       different += points != on_edge(two.polygon);
     }
   }
-  CHECK(shared > 5'000);
+  CHECK(shared > fewer(5'000));
   CHECK(different == 0);
 }
 
@@ -336,7 +337,7 @@ TEST_CASE("a perspective varying stays linear in clip space through clipping") {
   const auto plane = [](const glm::dvec4& p) { return 2.0 * p.x - 3.0 * p.y + p.z + 0.5 * p.w; };
   test::Random random{56};
   double worst = 0.0;
-  for (int i = 0; i < 20'000; ++i) {
+  for (int i = 0; i < fewer(20'000); ++i) {
     const Corners corners = some_triangle(random, 1.0f);
     std::array<Varyings<3>, 3> varyings{};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -358,7 +359,7 @@ TEST_CASE("a linear varying stays linear in the window through clipping") {
   test::Random random{57};
   double worst = 0.0;
   double worst_of_mesa = 0.0;
-  for (int i = 0; i < 20'000; ++i) {
+  for (int i = 0; i < fewer(20'000); ++i) {
     const Corners corners = some_triangle(random, 1.0f);
     std::array<Varyings<3>, 3> varyings{};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -455,7 +456,7 @@ TEST_CASE("triangles with corners on and a float beside the planes keep to the f
   test::Random random{59};
   std::size_t most = 0;
   int wrong = 0;
-  for (int i = 0; i < 200'000; ++i) {
+  for (int i = 0; i < fewer(200'000); ++i) {
     const float g = i % 3 == 0 ? 1.0f : i % 3 == 1 ? 2.0f : 16.0f;
     Corners corners{};
     for (glm::vec4& corner : corners) {
@@ -484,7 +485,7 @@ TEST_CASE("triangles with corners on and a float beside the planes keep to the f
 TEST_CASE("the largest finite positions clip without harm") {
   test::Random random{60};
   int wrong = 0;
-  for (int i = 0; i < 50'000; ++i) {
+  for (int i = 0; i < fewer(50'000); ++i) {
     Corners corners{};
     for (glm::vec4& corner : corners) {
       for (int k = 0; k < 4; ++k) {

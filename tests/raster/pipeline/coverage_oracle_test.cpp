@@ -9,6 +9,7 @@
 #include "raster/pipeline/draw.h"
 #include "raster/pipeline/setup.h"
 #include "tests/support/coverage_counts.h"
+#include "tests/support/sanitizers.h"
 
 using namespace softfocus;
 using test::profile_named;
@@ -123,7 +124,7 @@ TEST_CASE(
     "random triangles with vertices on pixel centres and corners cover what the oracle says") {
   test::Random random{77};
   std::vector<glm::vec4> positions;
-  for (int i = 0; i < 3 * 3'000; ++i) {
+  for (int i = 0; i < 3 * fewer(3'000); ++i) {
     const glm::vec2 window{static_cast<float>(random.whole(-8, 72)) * 0.5f,
                            static_cast<float>(random.whole(-8, 72)) * 0.5f};
     positions.push_back(test::at_window(window, 32, 32));
@@ -138,7 +139,7 @@ TEST_CASE(
 TEST_CASE("small triangles and slivers cover what the oracle says") {
   test::Random random{78};
   std::vector<glm::vec4> positions;
-  for (int i = 0; i < 4'000; ++i) {
+  for (int i = 0; i < fewer(4'000); ++i) {
     const glm::vec2 a{random.between(0.0f, 32.0f), random.between(0.0f, 32.0f)};
     const glm::vec2 step{random.between(-2.0f, 2.0f), random.between(-2.0f, 2.0f)};
     const glm::vec2 along = i % 2 == 0 ? step : step * 15.0f;
@@ -155,7 +156,7 @@ TEST_CASE("triangles as large as the guard band cover what the oracle says") {
   test::Random random{79};
   std::vector<glm::vec4> positions;
   positions.reserve(3 * 1'500);
-  for (int i = 0; i < 3 * 1'500; ++i) {
+  for (int i = 0; i < 3 * fewer(1'500); ++i) {
     positions.push_back({random.between(-15.9f, 15.9f), random.between(-15.9f, 15.9f), 0.0f, 1.0f});
   }
   CHECK(wrong_against_oracle(positions, 64, 64) == 0);

@@ -18,6 +18,7 @@
 #include "raster/numbers/fixed_point.h"
 #include "raster/pipeline/draw.h"
 #include "tests/support/raster_helpers.h"
+#include "tests/support/sanitizers.h"
 
 namespace softfocus {
 
@@ -136,7 +137,7 @@ TEST_CASE("lanes: triangles of every size have the scalar form's bits") {
     INFO("profile ", name);
     test::Random random{501};
     for (const double size : {0.4, 1.5, 6.0, 40.0, 200.0, 3000.0}) {
-      check_all_isas(kTarget, {}, random_triangles(random, kTarget, 1500, size),
+      check_all_isas(kTarget, {}, random_triangles(random, kTarget, fewer(1500), size),
                      profile_named(name));
     }
   }
@@ -159,7 +160,7 @@ TEST_CASE("lanes: triangles between the pixels' centres leave no trace") {
     INFO("profile ", name);
     DrawState state;
     state.cull = Cull::none;
-    check_all_isas(target, state, random_triangles(random, target, 20000, 0.6),
+    check_all_isas(target, state, random_triangles(random, target, fewer(20000), 0.6),
                    profile_named(name));
   }
 }
@@ -169,7 +170,7 @@ TEST_CASE("lanes: clipping by every plane, and through the eye, is the scalar fo
     INFO("profile ", name);
     test::Random random{503};
     Vertices vertices;
-    for (int i = 0; i < 3 * 700; ++i) {
+    for (int i = 0; i < 3 * fewer(700); ++i) {
       VertexOutput<4> vertex{};
       for (int k = 0; k < 4; ++k) vertex.position[k] = random.between(-2.0f, 2.0f);
       if (i % 50 == 0) vertex.position.x *= 60.0f;
@@ -192,7 +193,7 @@ TEST_CASE("lanes: positions that are no numbers draw what the scalar form draws"
   for (const char* name : kProfileNames) {
     INFO("profile ", name);
     test::Random random{504};
-    Vertices vertices = random_triangles(random, kTarget, 900, 20.0);
+    Vertices vertices = random_triangles(random, kTarget, fewer(900), 20.0);
     for (VertexOutput<4>& vertex : vertices) {
       if (random.whole(0, 3) != 0) continue;
       vertex.position[random.whole(0, 3)] =
@@ -204,7 +205,7 @@ TEST_CASE("lanes: positions that are no numbers draw what the scalar form draws"
 
 TEST_CASE("lanes: every depth test, with and without writing") {
   test::Random random{505};
-  Vertices vertices = random_triangles(random, kTarget, 400, 30.0);
+  Vertices vertices = random_triangles(random, kTarget, fewer(400), 30.0);
   // Depths that meet: all of a triangle at one of four.
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     vertices[i].position.z = (static_cast<float>(i / 3 % 4) * 0.4f - 0.6f) * vertices[i].position.w;
@@ -228,7 +229,7 @@ TEST_CASE(
   state.depth = DepthState{Compare::always, true};
   for (const char* name : kProfileNames) {
     INFO("profile ", name);
-    Vertices vertices = random_triangles(random, kTarget, 3000, 40.0);
+    Vertices vertices = random_triangles(random, kTarget, fewer(3000), 40.0);
     // Two corners, at times three, on the far plane or a hair before it.
     for (std::size_t i = 0; i < vertices.size(); ++i) {
       if (i % 3 == 0 && i % 2 == 0) continue;
@@ -241,7 +242,7 @@ TEST_CASE(
 
 TEST_CASE("lanes: winding, culling, fill rule and provoking vertex as in the scalar form") {
   test::Random random{506};
-  const Vertices vertices = random_triangles(random, kTarget, 600, 12.0);
+  const Vertices vertices = random_triangles(random, kTarget, fewer(600), 12.0);
   for (const char* name : {"ieee", "llvmpipe"}) {
     for (const FillRule rule : {FillRule::upper_left, FillRule::lower_left}) {
       Profile profile = profile_named(name);
@@ -266,7 +267,7 @@ TEST_CASE("lanes: winding, culling, fill rule and provoking vertex as in the sca
 
 TEST_CASE("lanes: pictures of every width to 70 pixels") {
   test::Random random{507};
-  for (int side = 1; side <= 70; ++side) {
+  for (int side = 1; side <= 70; side += 70 / fewer(70)) {
     const Target target{side, 71 - side};
     check_all_isas(target, {}, random_triangles(random, target, 60, 25.0), profile_named("ieee"));
   }

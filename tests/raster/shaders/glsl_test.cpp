@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "raster/shaders/glsl/glsl.h"
+#include "tests/support/sanitizers.h"
 #include "tests/support/skip.h"
 
 using namespace softfocus;
@@ -431,21 +432,21 @@ TEST_CASE("definitions reach the text, and nothing but definitions") {
 TEST_CASE("texts that would take a compiler's stack or memory are refused in a line") {
   if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
   std::string sum = "uniform float x;\nvoid main() {\n  gl_FragColor = vec4(x";
-  for (int i = 0; i < 200'000; ++i) sum += "+x";
+  for (int i = 0; i < fewer(200'000); ++i) sum += "+x";
   CHECK(error_of_text(sum + ");\n}\n") ==
         "mine.frag:3: an expression of more than 2000 operators; it would have to be split");
   const auto nested = [](const std::string& open, const std::string& close) {
     std::string text = "void main() { gl_FragColor = vec4(";
-    for (int i = 0; i < 60'000; ++i) text += open;
+    for (int i = 0; i < fewer(60'000); ++i) text += open;
     text += "1.0";
-    for (int i = 0; i < 60'000; ++i) text += close;
+    for (int i = 0; i < fewer(60'000); ++i) text += close;
     return text + "); }\n";
   };
   CHECK(error_of_text(nested("(", ")")) != "none");
   CHECK(error_of_text(nested("-", "")) != "none");
   CHECK(error_of_text(nested("abs(", ")")) != "none");
   std::string blocks = "void main() { ";
-  for (int i = 0; i < 60'000; ++i) blocks += "if (true) {";
+  for (int i = 0; i < fewer(60'000); ++i) blocks += "if (true) {";
   CHECK(error_of_text(blocks) != "none");
   std::string table = "#version 330\nout vec4 o;\nconst float t[4000] = float[](0.0";
   for (int i = 1; i < 4000; ++i) table += ", -" + std::to_string(i) + ".0";

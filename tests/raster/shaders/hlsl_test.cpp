@@ -11,6 +11,7 @@
 #include "raster/images/sliced_texture.h"
 #include "raster/shaders/glsl/glsl.h"
 #include "raster/shaders/shader.h"
+#include "tests/support/sanitizers.h"
 #include "tests/support/shader_checks.h"
 #include "tests/support/skip.h"
 
@@ -164,9 +165,9 @@ TEST_CASE("an error of HLSL names its line, and what glslang's stack cannot hold
             .find("mine.hlsl:1: #include none.hlsli: cannot read") == 0);
   const auto deep = [](const std::string& open, const std::string& close) {
     std::string text = "float4 main() : SV_Target { float x = 1; ";
-    for (int i = 0; i < 40000; ++i) text += open;
+    for (int i = 0; i < fewer(40000); ++i) text += open;
     text += "x";
-    for (int i = 0; i < 40000; ++i) text += close;
+    for (int i = 0; i < fewer(40000); ++i) text += close;
     return text + "; return x; }";
   };
   CHECK(error_of_hlsl(deep("(", ")")) != "");
@@ -174,7 +175,7 @@ TEST_CASE("an error of HLSL names its line, and what glslang's stack cannot hold
   CHECK(error_of_hlsl(deep("-", "")) != "");
   CHECK(error_of_hlsl(deep("{ if (x > 0) { x += 1; } else ", " = 1; }")) != "");
   std::string chain = "float4 main() : SV_Target { float x = 1; if (x > 1) { x = 2; }";
-  for (int i = 0; i < 20000; ++i) chain += " else if (x > 3) { x = 4; }";
+  for (int i = 0; i < fewer(20000); ++i) chain += " else if (x > 3) { x = 4; }";
   CHECK(error_of_hlsl(chain + " return x; }") != "");
   // A table, and branches one behind the other, are not deep.
   std::string flat = "static const float2 kPoints[200] = {";

@@ -219,7 +219,7 @@ TEST_CASE("auto picture: a check is due unless the prediction is far within the 
 }
 
 TEST_CASE("auto picture: the same bits and the same words on any threads and vector unit" *
-          doctest::test_suite("threads")) {
+          doctest::test_suite("threads long")) {
   ThreadPool one{1, Isa::scalar};
   const Subject subject{"random:48", one};
   const AutoPicture expected = auto_picture(subject.input(0.02, Verify::always), one);

@@ -82,7 +82,7 @@ TEST_CASE("filtered views: the mean of the views, each as the oracle spreads it"
 }
 
 TEST_CASE("filtered views: the same bits for any number of threads and on every vector unit" *
-          doctest::test_suite("threads")) {
+          doctest::test_suite("threads long")) {
   const Scene scene = scene_named("figures");
   const Sampling sampling{.samples = 19, .jitter = true, .aperture = {7}};
   ThreadPool one{1};

@@ -57,7 +57,7 @@ TEST_CASE("accumulation: holes in the plane of focus are as sharp as the pinhole
 }
 
 TEST_CASE("accumulation: the same bits for any number of threads and on every vector unit" *
-          doctest::test_suite("threads")) {
+          doctest::test_suite("threads long")) {
   const Scene scene = built_in("figures");
   const Sampling sampling{.samples = 50, .jitter = true, .until = 1e-6, .aperture = {7}};
   ThreadPool one{1};

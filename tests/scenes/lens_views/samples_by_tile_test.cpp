@@ -123,7 +123,7 @@ TEST_CASE("samples by tile: each tile is that of a picture with as many samples 
 }
 
 TEST_CASE("samples by tile: the same bits for any number of threads and on every vector unit" *
-          doctest::test_suite("threads")) {
+          doctest::test_suite("threads long")) {
   const Scene scene = built_in("figures");
   const Sampling sampling{.samples = 24, .jitter = true, .by_tile = true};
   ThreadPool one{1, Isa::scalar};

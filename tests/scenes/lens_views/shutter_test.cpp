@@ -12,6 +12,7 @@
 #include "scenes/lens_views/shutter_times.h"
 #include "scenes/load/load_scene.h"
 #include "tests/support/lens_view_scenes.h"
+#include "tests/support/sanitizers.h"
 
 using namespace softfocus;
 using test::square_scene;
@@ -185,6 +186,7 @@ TEST_CASE("shutter: it is the mean of the pictures that draw_scene() makes at it
   ThreadPool pool{2};
   const View view = view_of(scene, taken, pool);
   for (const int samples : {kLensViewGroup + 3, 260}) {
+    if (kHasSanitizers && samples == 260) continue;
     const Sampling sampling{.samples = samples, .jitter = true, .shutter_frames = 0.75};
     const auto points = view_points(sampling);
     const auto offsets = view_offsets(true, points);
@@ -207,7 +209,7 @@ TEST_CASE("shutter: it is the mean of the pictures that draw_scene() makes at it
 }
 
 TEST_CASE("shutter: the same bits for any number of threads and on every vector unit" *
-          doctest::test_suite("threads")) {
+          doctest::test_suite("threads long")) {
   const Scene scene = turning_and_crossing();
   const Taken taken{.width = 90, .height = 70, .frame = 2.0, .radius_m = 0.01};
   const Sampling sampling{.samples = 19, .jitter = true, .shutter_frames = 1.0};

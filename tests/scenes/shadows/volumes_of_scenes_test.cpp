@@ -59,7 +59,7 @@ TEST_CASE("sphere-world's volumes are right" * doctest::test_suite("long")) {
 }
 
 TEST_CASE("volumes give the same bits on every vector unit and number of threads" *
-          doctest::test_suite("threads")) {
+          doctest::test_suite("threads long")) {
   Scene scene = load_scene("cube-room", scene_search_path({}));
   set_shadows(scene, ShadowKind::volumes);
   const CameraMatrices camera = camera_matrices(scene.camera, 5.0, 150, 97);

@@ -108,7 +108,8 @@ TEST_CASE("chart of motion blur: more times are nearer to the truth, an instant 
   CHECK(many < 0.5 * few);
 }
 
-TEST_CASE("chart of motion blur: from one picture, each way is nearer than an instant") {
+TEST_CASE("chart of motion blur: from one picture, each way is nearer than an instant" *
+          doctest::test_suite("long")) {
   ThreadPool pool{2};
   const ChartScene scene = scene_of("motion-blur", "windmill", pool, {256, 256});
   const Image truth = truth_of(scene, pool);
@@ -146,8 +147,8 @@ TEST_CASE("chart of anti-aliasing: what looks from more places in the pixel is n
   CHECK(sixteen < twice);
 }
 
-TEST_CASE(
-    "chart of shadows: projected and volumes have no wrong pixel, maps have, a pinhole more") {
+TEST_CASE("chart of shadows: projected and volumes have no wrong pixel, maps have, a pinhole more" *
+          doctest::test_suite("long")) {
   ThreadPool pool{2};
   const ChartScene scene = scene_of("shadows", "figures", pool, {96, 96});
   const Image truth = truth_of(scene, pool);

@@ -53,8 +53,8 @@ TEST_CASE("chart truth: it is what accumulation gives of the sequence, to the bi
   }
 }
 
-TEST_CASE(
-    "chart truth: its noise falls as samples grow, and is far below a sharp picture's error") {
+TEST_CASE("chart truth: its noise falls as samples grow, and is far below a sharp picture's error" *
+          doctest::test_suite("long")) {
   ThreadPool pool{2};
   const ChartScene scene = scene_of({.size = {96, 96}}, pool);
   const auto made = [&](int samples) {

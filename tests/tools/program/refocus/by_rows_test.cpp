@@ -10,6 +10,7 @@
 #include "tests/support/cli_refused.h"
 #include "tests/support/cli_render.h"
 #include "tests/support/random.h"
+#include "tests/support/sanitizers.h"
 #include "tests/support/skip.h"
 #include "tools/pictures/exr_file.h"
 #include "tools/pictures/picture_file.h"
@@ -328,7 +329,7 @@ TEST_CASE("by rows: a picture higher than 16384 rows is refocused, or says why i
 }
 
 TEST_CASE("by rows: memory does not grow with the picture's height") {
-  if (!kCountsMemory) return skip("", "sanitizers take memory of their own");
+  if (kHasSanitizers) return skip("", "sanitizers take memory of their own");
   // Files without blocks on the disk: black, 1 m away and out of focus by 2 pixels. 20 bytes a
   // pixel, as the whole form takes, would be 335 MB.
   const TemporaryDirectory directory;
