@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include <cstring>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -67,7 +68,8 @@ std::uint64_t texel_bits(const Image& picture, int x, int y) {
 
 }  // namespace
 
-TEST_CASE("cube-room's shadows are those of every ray against every triangle") {
+TEST_CASE("cube-room's shadows are those of every ray against every triangle" *
+          doctest::test_suite("long")) {
   check_errors(errors_of(shadowed("cube-room"), 64, 40, false));
 }
 
@@ -109,7 +111,7 @@ TEST_CASE("shadows have the same bits on every vector unit and number of threads
     const Scene scene = shadowed(name);
     ThreadPool scalar{1, Isa::scalar};
     const Image expected = drawn(scene, 150, 97, scalar).picture;
-    for (const Isa isa : {available_isas()[1], widest_isa()}) {
+    for (const Isa isa : std::set{available_isas()[1], widest_isa()}) {
       ThreadPool pool{3, isa};
       CHECK(equal(drawn(scene, 150, 97, pool).picture, expected));
     }
@@ -259,7 +261,7 @@ TEST_CASE("shadow maps have the same bits on every vector unit and number of thr
     const Scene scene = mapped("cube-room", {.size = 200, .kernel = kernel, .cascades = 2});
     ThreadPool scalar{1, Isa::scalar};
     const Image expected = drawn(scene, 150, 97, scalar).picture;
-    for (const Isa isa : {available_isas()[1], widest_isa()}) {
+    for (const Isa isa : std::set{available_isas()[1], widest_isa()}) {
       ThreadPool pool{3, isa};
       CHECK(equal(drawn(scene, 150, 97, pool).picture, expected));
     }

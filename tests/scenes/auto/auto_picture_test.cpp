@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <string>
 
 #include "dof/auto/candidates.h"
@@ -223,7 +224,7 @@ TEST_CASE("auto picture: the same bits and the same words on any threads and vec
   ThreadPool one{1, Isa::scalar};
   const Subject subject{"random:48", one};
   const AutoPicture expected = auto_picture(subject.input(0.02, Verify::always), one);
-  for (const Isa isa : {available_isas()[1], widest_isa()}) {
+  for (const Isa isa : std::set{available_isas()[1], widest_isa()}) {
     ThreadPool pool{3, isa};
     const Subject again{"random:48", pool};
     const AutoPicture found = auto_picture(again.input(0.02, Verify::always), pool);

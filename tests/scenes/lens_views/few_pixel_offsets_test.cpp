@@ -80,7 +80,8 @@ TEST_CASE("few pixel offsets: one in each of n columns and n rows of the pixel")
   }
 }
 
-TEST_CASE("few pixel offsets: edges in focus err less than with the sequence's first") {
+TEST_CASE("few pixel offsets: edges in focus err less than with the sequence's first" *
+          doctest::test_suite("long")) {
   for (const int count : {4, 8, 16, 32, 64}) {
     CAPTURE(count);
     const Points points = few_lens_points({}, count);
@@ -89,7 +90,8 @@ TEST_CASE("few pixel offsets: edges in focus err less than with the sequence's f
   }
 }
 
-TEST_CASE("few pixel offsets: edges a little out of focus err less than with the sequence's") {
+TEST_CASE("few pixel offsets: edges a little out of focus err less than with the sequence's" *
+          doctest::test_suite("long")) {
   for (const int count : {4, 8, 16, 32, 64}) {
     const Points points = few_lens_points({}, count);
     const Points offsets = few_pixel_offsets(points);

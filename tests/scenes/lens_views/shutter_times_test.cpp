@@ -131,7 +131,8 @@ TEST_CASE("shutter times: those of views that grow are evenly spread at each siz
   for (const int size : sizes) check_one_a_part({times.begin(), times.begin() + size});
 }
 
-TEST_CASE("shutter times: edges that move out of focus err less than with times in any order") {
+TEST_CASE("shutter times: edges that move out of focus err less than with times in any order" *
+          doctest::test_suite("long")) {
   for (const int count : {16, 32, 64, 128, 1024}) {
     CAPTURE(count);
     const Points points = lens_points_for({}, count);
