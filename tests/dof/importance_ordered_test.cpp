@@ -173,7 +173,7 @@ TEST_CASE("importance-ordered: what is exact at one budget is exact at every lar
 }
 
 TEST_CASE("importance-ordered: the same bits for any number of threads" *
-          doctest::test_suite("threads long")) {
+          doctest::test_suite("threads")) {
   const Image scene = stage_image(203, 101);
   for (const float budget : {0.0f, 0.3f}) {
     ThreadPool one(1);

@@ -158,7 +158,7 @@ TEST_CASE("a surface belongs to layers in shares that add up to one, in the orde
 }
 
 TEST_CASE("an object without numbers is what linked neighbours connect, for any threads" *
-          doctest::test_suite("threads long")) {
+          doctest::test_suite("threads")) {
   for (const auto& [width, height] : {std::pair{1, 1}, {1, 70}, {90, 1}, {50, 100}, {33, 64}}) {
     const Planes radii = radii_of(width, height, 5);
     for (const int threads : {1, 2, 3}) {

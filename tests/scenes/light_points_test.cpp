@@ -5,7 +5,6 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <set>
 #include <vector>
 
 #include "raster/images/texel.h"
@@ -185,7 +184,7 @@ TEST_CASE("soft shadows have the same bits on every vector unit and number of th
   const Scene scene = soft_scene(3);
   ThreadPool scalar{1, Isa::scalar};
   const Image expected = drawn(scene, scalar);
-  for (const Isa isa : std::set{available_isas()[1], widest_isa()}) {
+  for (const Isa isa : {available_isas()[1], widest_isa()}) {
     ThreadPool pool{3, isa};
     CHECK(equal(drawn(scene, pool), expected));
   }

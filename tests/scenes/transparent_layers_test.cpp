@@ -188,7 +188,7 @@ TEST_CASE("transparent: alpha is the depth of the nearest surface of opacity 1/2
 }
 
 TEST_CASE("transparent: the same bits in lanes and on threads, for every profile" *
-          doctest::test_suite("threads long")) {
+          doctest::test_suite("threads")) {
   const Scene scene = load_scene("glass", scene_search_path({}));
   constexpr int kWidth = 201, kHeight = 150;
   for (const char* profile_name : {"ieee", "llvmpipe", "d3d11", "softpipe"}) {

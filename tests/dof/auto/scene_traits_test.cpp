@@ -127,7 +127,7 @@ TEST_CASE("scene traits: depths that are none lie beyond the focus, or before it
 }
 
 TEST_CASE("scene traits: the same bits for any number of threads and on every vector unit" *
-          doctest::test_suite("threads long")) {
+          doctest::test_suite("threads")) {
   for (const auto& [width, height] : {std::pair{301, 77}, std::pair{16, 9}, std::pair{1, 1}}) {
     const Image image = random_scene_image(width, height, 5);
     ThreadPool one{1, Isa::scalar};

@@ -381,7 +381,7 @@ TEST_CASE("the C interface: without a largest radius nothing is cut, a caller's 
 }
 
 TEST_CASE("the C interface: calls of several threads on one context wait for each other" *
-          doctest::test_suite("threads long")) {
+          doctest::test_suite("threads")) {
   const Image scene = random_scene_image(kWidth, kHeight, 11);
   const Image expected = expected_of(*find_method("two-pass"), strong_input(scene));
   const softfocus_picture picture = c_picture(scene);

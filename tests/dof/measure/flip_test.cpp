@@ -131,7 +131,7 @@ TEST_CASE("FLIP: what is farther away blurs more: finer stripes are forgiven") {
   CHECK(mean(flip(stripes, shifted, 120.0)) < mean(flip(stripes, shifted, 20.0)));
 }
 
-TEST_CASE("FLIP is the same on any number of threads" * doctest::test_suite("threads long")) {
+TEST_CASE("FLIP is the same on any number of threads" * doctest::test_suite("threads")) {
   ThreadPool one{1};
   ThreadPool three{3};
   const Image a = random_scene_image(30, 200, 1);

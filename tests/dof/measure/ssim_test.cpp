@@ -109,7 +109,7 @@ TEST_CASE("SSIM reacts to a blur and not to a whole-pixel difference far away") 
   CHECK(row(map, 10)[11] == 1.0);  // past the window's 5 pixels
 }
 
-TEST_CASE("SSIM is the same on any number of threads" * doctest::test_suite("threads long")) {
+TEST_CASE("SSIM is the same on any number of threads" * doctest::test_suite("threads")) {
   ThreadPool one{1};
   ThreadPool three{3};
   const Image a = random_scene_image(40, 200, 1);

@@ -11,7 +11,6 @@
 
 #include "raster/images/texel.h"
 #include "tests/support/raster_helpers.h"
-#include "tests/support/sanitizers.h"
 
 using namespace softfocus;
 using test::profile_named;
@@ -161,7 +160,7 @@ TEST_CASE("a bilinear fetch at any coordinate is as near as its position's round
   const Texture texture = random_texture(Format::rgba32f, 13, 11, 3);
   const Sampler sampler{Filter::bilinear, Wrap::repeat, Wrap::mirrored_repeat};
   double worst = 0.0;
-  for (int i = 0; i < fewer(20'000); ++i) {
+  for (int i = 0; i < 20'000; ++i) {
     const glm::vec2 uv{random.between(-3.0f, 3.0f), random.between(-3.0f, 3.0f)};
     const glm::dvec4 exact =
         bilinear_oracle(texture.levels[0], sampler, uv.x, uv.y, BilinearWeights::binary32);

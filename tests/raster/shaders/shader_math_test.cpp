@@ -13,7 +13,6 @@
 
 #include "raster/numbers/hash.h"
 #include "tests/support/random.h"
-#include "tests/support/sanitizers.h"
 
 // The oracle is the C library in binary64. The bounds are those of docs/specification.md, found
 // over all floats by the test case that is skipped.
@@ -182,7 +181,7 @@ TEST_CASE("pow is within 1.2 ULP, whatever the size of its result") {
   test::Random random{81};
   std::vector<float> a;
   std::vector<float> b;
-  for (int i = 0; i < fewer(100'000); ++i) {
+  for (int i = 0; i < 100'000; ++i) {
     const float base = i % 2 == 0
                            ? std::ldexp(random.between(1.0f, 2.0f), random.whole(-140, 127))
                            : 1.0f + std::ldexp(random.between(-1.0f, 1.0f), random.whole(-23, -1));
@@ -218,7 +217,7 @@ TEST_CASE("atan of two values is within 2.3 ULP") {
   test::Random random{82};
   std::vector<float> a;
   std::vector<float> b;
-  for (int i = 0; i < fewer(100'000); ++i) {
+  for (int i = 0; i < 100'000; ++i) {
     if (i % 3 == 0) {
       a.push_back(std::bit_cast<float>(static_cast<std::uint32_t>(random.next() >> 32)));
       b.push_back(std::bit_cast<float>(static_cast<std::uint32_t>(random.next() >> 32)));

@@ -94,8 +94,7 @@ TEST_CASE("ray-traced: one-sided surfaces are seen from their fronts alone, mirr
   }
 }
 
-TEST_CASE("ray-traced: the same bits for any number of threads" *
-          doctest::test_suite("threads long")) {
+TEST_CASE("ray-traced: the same bits for any number of threads" * doctest::test_suite("threads")) {
   if (is_missing()) return;
   const Scene scene = load_scene("figures", scene_search_path({}));
   const Sampling sampling{.samples = 20, .jitter = true, .aperture = {7}};

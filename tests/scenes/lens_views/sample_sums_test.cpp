@@ -43,7 +43,7 @@ bool same_bits(const SampleSums& a, const SampleSums& b) {
 }  // namespace
 
 TEST_CASE("sums are the same on every vector unit and any number of threads" *
-          doctest::test_suite("threads long")) {
+          doctest::test_suite("threads")) {
   test::Random random;
   for (const int width : {1, 3, 16, 17, 50}) {
     for (const std::size_t count : {std::size_t{1}, std::size_t{3}, std::size_t{8}}) {

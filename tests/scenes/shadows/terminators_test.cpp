@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -211,7 +210,7 @@ TEST_CASE("terminators have the same bits on every vector unit and number of thr
   for (const Terminator rule : {Terminator::normals, Terminator::fade}) {
     ThreadPool scalar{1, Isa::scalar};
     const Image expected = drawn(sphere_scene(rule), scalar);
-    for (const Isa isa : std::set{available_isas()[1], widest_isa()}) {
+    for (const Isa isa : {available_isas()[1], widest_isa()}) {
       ThreadPool pool{3, isa};
       CHECK(equal(drawn(sphere_scene(rule), pool), expected));
     }

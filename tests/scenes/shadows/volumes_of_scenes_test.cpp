@@ -2,7 +2,6 @@
 
 #include <doctest/doctest.h>
 
-#include <set>
 #include <string>
 #include <vector>
 
@@ -60,7 +59,7 @@ TEST_CASE("sphere-world's volumes are right" * doctest::test_suite("long")) {
 }
 
 TEST_CASE("volumes give the same bits on every vector unit and number of threads" *
-          doctest::test_suite("threads long")) {
+          doctest::test_suite("threads")) {
   Scene scene = load_scene("cube-room", scene_search_path({}));
   set_shadows(scene, ShadowKind::volumes);
   const CameraMatrices camera = camera_matrices(scene.camera, 5.0, 150, 97);
@@ -72,7 +71,7 @@ TEST_CASE("volumes give the same bits on every vector unit and number of threads
   };
   ThreadPool scalar{1, Isa::scalar};
   const std::vector<std::uint8_t> expected = mask_by(scalar);
-  for (const Isa isa : std::set{available_isas()[1], widest_isa()}) {
+  for (const Isa isa : {available_isas()[1], widest_isa()}) {
     ThreadPool pool{3, isa};
     CHECK(mask_by(pool) == expected);
   }

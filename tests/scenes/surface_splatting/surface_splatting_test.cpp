@@ -231,7 +231,7 @@ TEST_CASE("surface-splatting: the points of an unbroken surface stand for each p
 }
 
 TEST_CASE("surface-splatting: the same bits for any number of threads and on every vector unit" *
-          doctest::test_suite("threads long")) {
+          doctest::test_suite("threads")) {
   const Scene scene = load_scene("figures", scene_search_path({}));
   ThreadPool one{1};
   const Image expected = splatted(scene, 150, 70, one, scene.lens.lens).sampled.picture;

@@ -208,7 +208,7 @@ TEST_CASE("a refresh draws its group and what was not seen, and says how much th
 }
 
 TEST_CASE("frames from those before have the same bits in any vectors and any number of threads" *
-          doctest::test_suite("threads long")) {
+          doctest::test_suite("threads")) {
   const Scene scene = orbit_of_figures();
   ThreadPool alone{1, Isa::scalar};
   for (const FrameEffect& effect : {FrameEffect{TemporalAa{}}, FrameEffect{Refresh{}},
