@@ -26,7 +26,7 @@ std::size_t mutate_freely(std::uint8_t* data, std::size_t size, std::size_t most
 
 struct FuzzTarget {
   std::string_view name;
-  int (*run)(const std::uint8_t* data, std::size_t size);
+  FuzzOneInput* run;
   std::size_t (*mutate)(std::uint8_t* data, std::size_t size, std::size_t most,
                         unsigned seed) = mutate_freely;
 };

@@ -91,23 +91,12 @@ inline std::size_t mutate_in_place(std::uint8_t* data, std::size_t size, std::si
 /// Random words of SPIR-V, damaged where they mean something.
 std::size_t mutate_spirv(std::uint8_t* data, std::size_t size, std::size_t most, unsigned seed);
 
-// What each target does with an input; the head of its file says what it claims. They return as
-// LLVMFuzzerTestOneInput() does: -1 keeps the input out of the corpus.
-int fuzz_fixed(const std::uint8_t* data, std::size_t size);
-int fuzz_glsl(const std::uint8_t* data, std::size_t size);
-int fuzz_mtl(const std::uint8_t* data, std::size_t size);
-int fuzz_notes(const std::uint8_t* data, std::size_t size);
-int fuzz_obj(const std::uint8_t* data, std::size_t size);
-int fuzz_options(const std::uint8_t* data, std::size_t size);
+/// What a target does with an input; the head of its file says what it claims. Returns as
+/// LLVMFuzzerTestOneInput() does: -1 keeps the input out of the corpus.
+using FuzzOneInput = int(const std::uint8_t* data, std::size_t size);
+FuzzOneInput fuzz_fixed, fuzz_glsl, fuzz_mtl, fuzz_notes, fuzz_obj, fuzz_options, fuzz_profile,
+    fuzz_refocus, fuzz_relief, fuzz_scene, fuzz_sequence, fuzz_shader, fuzz_sums, fuzz_texture;
 int fuzz_picture(const PictureFileReader& reader, const std::uint8_t* data, std::size_t size);
-int fuzz_profile(const std::uint8_t* data, std::size_t size);
-int fuzz_refocus(const std::uint8_t* data, std::size_t size);
-int fuzz_relief(const std::uint8_t* data, std::size_t size);
-int fuzz_scene(const std::uint8_t* data, std::size_t size);
-int fuzz_sequence(const std::uint8_t* data, std::size_t size);
-int fuzz_shader(const std::uint8_t* data, std::size_t size);
-int fuzz_sums(const std::uint8_t* data, std::size_t size);
-int fuzz_texture(const std::uint8_t* data, std::size_t size);
 
 /// Ends the program, which is a finding, unless it holds.
 inline void demand(bool holds) {

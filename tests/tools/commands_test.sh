@@ -213,8 +213,8 @@ progress() {
 
 make_stubs
 copy_tree
-in_order demo installed libraries_alone demo all_tests libraries_alone by_hand installed
-in_order libraries_alone all_tests installed libraries packages
+in_order demo installed libraries_alone demo installed all_tests libraries_alone by_hand installed demo
+in_order libraries_alone all_tests installed by_hand libraries all_tests packages
 counting
 bare_machine
 progress

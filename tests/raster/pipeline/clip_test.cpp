@@ -259,7 +259,7 @@ TEST_CASE("a triangle inside is not touched") {
 }
 
 TEST_CASE("two triangles with a common edge get identical new vertices on it") {
-  constexpr std::array kinds{Interpolation::perspective};
+  constexpr std::array kKinds{Interpolation::perspective};
   test::Random random{55};
   int shared = 0;
   int different = 0;
@@ -269,8 +269,8 @@ TEST_CASE("two triangles with a common edge get identical new vertices on it") {
       const glm::vec4 other = some_point(random, g);
       // The varying is 0 on the edge and nowhere else.
       const std::array<Varyings<3>, 3> marks{Varyings<3>{0.0f}, {0.0f}, {1.0f}};
-      const Clipped one = clip(corners, g, marks, kinds);
-      const Clipped two = clip({corners[1], corners[0], other}, g, marks, kinds);
+      const Clipped one = clip(corners, g, marks, kKinds);
+      const Clipped two = clip({corners[1], corners[0], other}, g, marks, kKinds);
       const auto on_edge = [](const ClipPolygon& polygon) {
         std::vector<std::array<float, 4>> points;
         for (std::size_t k = 0; k < polygon.count; ++k) {
@@ -290,7 +290,7 @@ TEST_CASE("two triangles with a common edge get identical new vertices on it") {
 }
 
 TEST_CASE("a new vertex is computed from the end that is nearer to the plane") {
-  constexpr std::array kinds{Interpolation::perspective};
+  constexpr std::array kKinds{Interpolation::perspective};
   test::Random random{62};
   int wrong = 0;
   int other_end_differs = 0;
@@ -300,7 +300,7 @@ TEST_CASE("a new vertex is computed from the end that is nearer to the plane") {
     const auto cut = [&](float x_inside, float x_outside) {
       const glm::vec4 beyond{x_outside, 0.0f, 0.0f, 4.0f};
       const Corners corners{glm::vec4{x_inside, 0.0f, 0.0f, 4.0f}, beyond, beyond};
-      const Clipped clipped = clip(corners, 1.0f, {Varyings<3>{in}, {out}, {out}}, kinds);
+      const Clipped clipped = clip(corners, 1.0f, {Varyings<3>{in}, {out}, {out}}, kKinds);
       wrong += clipped.polygon.count != 3;
       wrong += clipped.polygon.vertices[1].position != glm::vec4{4.0f, 0.0f, 0.0f, 4.0f};
       return clipped.polygon.vertices[1].varyings[0];
@@ -333,7 +333,7 @@ TEST_CASE("a polygon at an infinite distance from a plane vanishes") {
 }
 
 TEST_CASE("a perspective varying stays linear in clip space through clipping") {
-  constexpr std::array kinds{Interpolation::perspective};
+  constexpr std::array kKinds{Interpolation::perspective};
   const auto plane = [](const glm::dvec4& p) { return 2.0 * p.x - 3.0 * p.y + p.z + 0.5 * p.w; };
   test::Random random{56};
   double worst = 0.0;
@@ -343,7 +343,7 @@ TEST_CASE("a perspective varying stays linear in clip space through clipping") {
     for (std::size_t k = 0; k < 3; ++k) {
       varyings[k][0] = static_cast<float>(plane(glm::dvec4{corners[k]}));
     }
-    const Clipped clipped = clip(corners, 1.0f, varyings, kinds);
+    const Clipped clipped = clip(corners, 1.0f, varyings, kKinds);
     for (std::size_t k = 0; k < clipped.polygon.count; ++k) {
       const ClipVertex& vertex = clipped.polygon.vertices[k];
       worst = std::max(worst, std::fabs(static_cast<double>(vertex.varyings[0]) -
@@ -354,7 +354,7 @@ TEST_CASE("a perspective varying stays linear in clip space through clipping") {
 }
 
 TEST_CASE("a linear varying stays linear in the window through clipping") {
-  constexpr std::array kinds{Interpolation::linear};
+  constexpr std::array kKinds{Interpolation::linear};
   const auto plane = [](const glm::dvec4& p) { return 2.0 * p.x / p.w - 3.0 * p.y / p.w + 0.5; };
   test::Random random{57};
   double worst = 0.0;
@@ -369,12 +369,12 @@ TEST_CASE("a linear varying stays linear in the window through clipping") {
       return std::fabs(static_cast<double>(vertex.varyings[0]) -
                        plane(glm::dvec4{vertex.position}));
     };
-    const Clipped clipped = clip(corners, 1.0f, varyings, kinds);
+    const Clipped clipped = clip(corners, 1.0f, varyings, kKinds);
     for (std::size_t k = 0; k < clipped.polygon.count; ++k) {
       worst = std::max(worst, error(clipped.polygon.vertices[k]));
     }
     // By the images' x, of vertices made by one plane only and not on upright edges.
-    const Clipped mesa = clip(corners, 1.0f, varyings, kinds, test::profile_named("llvmpipe"));
+    const Clipped mesa = clip(corners, 1.0f, varyings, kKinds, test::profile_named("llvmpipe"));
     if (bit_count(mesa.planes) != 1) continue;
     for (std::size_t k = 0; k < mesa.polygon.count; ++k) {
       bool upright = false;
@@ -394,12 +394,12 @@ TEST_CASE("a linear varying stays linear in the window through clipping") {
 TEST_CASE("in Mesa's drivers a linear varying is lost on an edge along the picture's side") {
   // Cut by x = w and then by y = w: the second cut is on an edge whose ends are both at
   // window x = 1, at different clip x.
-  constexpr std::array kinds{Interpolation::linear};
+  constexpr std::array kKinds{Interpolation::linear};
   const Corners corners{
       glm::vec4{0.0f, 0.0f, 0.0f, 1.0f}, {4.0f, 0.0f, 0.0f, 1.0f}, {0.0f, 8.0f, 0.0f, 2.0f}};
   const std::array<Varyings<3>, 3> varyings{Varyings<3>{1.0f}, {1.0f}, {1.0f}};
   const auto lost = [&](const Profile& profile) {
-    const ClipPolygon polygon = clip(corners, 1.0f, varyings, kinds, profile).polygon;
+    const ClipPolygon polygon = clip(corners, 1.0f, varyings, kKinds, profile).polygon;
     CHECK(polygon.count == 4);
     int count = 0;
     for (std::size_t k = 0; k < polygon.count; ++k) {
@@ -412,12 +412,12 @@ TEST_CASE("in Mesa's drivers a linear varying is lost on an edge along the pictu
 }
 
 TEST_CASE("a flat varying goes through clipping as it is, infinite or NaN") {
-  constexpr std::array kinds{Interpolation::flat, Interpolation::flat, Interpolation::flat};
+  constexpr std::array kKinds{Interpolation::flat, Interpolation::flat, Interpolation::flat};
   const Varyings<3> odd{kInfinity, kNan, -0.0f};
   test::Random random{61};
   int wrong = 0;
   for (int i = 0; i < 1'000; ++i) {
-    const Clipped clipped = clip(some_triangle(random, 1.0f), 1.0f, {odd, odd, odd}, kinds);
+    const Clipped clipped = clip(some_triangle(random, 1.0f), 1.0f, {odd, odd, odd}, kKinds);
     for (std::size_t k = 0; k < clipped.polygon.count; ++k) {
       const auto& v = clipped.polygon.vertices[k].varyings;
       wrong += v[0] != kInfinity || !std::isnan(v[1]) || v[2] != 0.0f || !std::signbit(v[2]);
@@ -427,13 +427,13 @@ TEST_CASE("a flat varying goes through clipping as it is, infinite or NaN") {
 }
 
 TEST_CASE("equal varyings stay equal to the bit through clipping") {
-  constexpr std::array kinds{Interpolation::perspective, Interpolation::linear,
-                             Interpolation::flat};
+  constexpr std::array kKinds{Interpolation::perspective, Interpolation::linear,
+                              Interpolation::flat};
   test::Random random{58};
   int wrong = 0;
   for (int i = 0; i < 10'000; ++i) {
     const Varyings<3> same{0.1f, -7.3f, 1e20f};
-    const Clipped clipped = clip(some_triangle(random, 1.0f), 1.0f, {same, same, same}, kinds);
+    const Clipped clipped = clip(some_triangle(random, 1.0f), 1.0f, {same, same, same}, kKinds);
     for (std::size_t k = 0; k < clipped.polygon.count; ++k) {
       for (std::size_t j = 0; j < 3; ++j) {
         wrong += clipped.polygon.vertices[k].varyings[j] != same[j];
