@@ -10,8 +10,7 @@ inline constexpr int kMostSampled = 8;  // vectors at once
 /// The larger squared length of two differences, in texels.
 SOFTFOCUS_INLINE Floats largest_square(const DecodedTexture& texture, Floats du_dx, Floats dv_dx,
                                        Floats du_dy, Floats dv_dy) {
-  const float width = static_cast<float>(texture.source->levels.front().width);
-  const float height = static_cast<float>(texture.source->levels.front().height);
+  const float width = texture.u.sizes[0], height = texture.v.sizes[0];
   const Floats s_x = du_dx * width;
   const Floats t_x = dv_dx * height;
   const Floats s_y = du_dy * width;
@@ -58,6 +57,31 @@ SOFTFOCUS_INLINE Floats level_of_detail_lanes(const DecodedTexture& texture, con
   Floats lod;
   level_of_detail_by_lane(texture, profile, du_dx, dv_dx, du_dy, dv_dy, lod);
   return lod;
+}
+
+/// largest_square() of quads of 2x2 pixels at these places, in each quad's first lane.
+SOFTFOCUS_INLINE Floats largest_square_of_quads(const DecodedTexture& texture, Floats u, Floats v) {
+  const Floats sizes = fours_of<0, 0, 4, 4>(splat(texture.u.sizes[0]), splat(texture.v.sizes[0]));
+  // To the right and down, first of u, then of v.
+  const Floats steps = fours_of<1, 2, 5, 6>(u, v) - fours_of<0, 0, 4, 4>(u, v);
+  const Floats texels = steps * sizes;
+  const Floats squares = texels * texels;
+  const Floats sums = squares + fours_of<2, 3, 0, 1>(squares, squares);
+  return larger(sums, spread<1>(sums));
+}
+
+/// level_of_detail_lanes() of quads of 2x2 pixels at these places: by the differences along the
+/// upper row and the left column.
+SOFTFOCUS_INLINE Floats level_of_detail_of_quads(const DecodedTexture& texture,
+                                                 const Profile& profile, Floats u, Floats v) {
+  if (profile.texture_unit == TextureUnit::softpipe) {
+    return level_of_detail_lanes(texture, profile, spread<1>(u) - spread<0>(u),
+                                 spread<1>(v) - spread<0>(v), spread<2>(u) - spread<0>(u),
+                                 spread<2>(v) - spread<0>(v));
+  }
+  const Floats square = spread<0>(largest_square_of_quads(texture, u, v));
+  return profile.texture_unit == TextureUnit::swiftshader ? log2_of_root_by_bits(square)
+                                                          : 0.5f * log2_linear(square);
 }
 
 /// sample() of `count` vectors, kMostSampled at most.

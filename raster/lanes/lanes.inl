@@ -436,14 +436,23 @@ SOFTFOCUS_INLINE Ints compress(Ints v, Compression kept) { return (Ints)pick((Fl
 
 // --- fours: vectors as kLanes / 4 times four lanes ---
 
-/// In each four lanes, all become the one of that number.
-template <int number, class Vector, std::size_t... lane>
-SOFTFOCUS_INLINE Vector spread_lanes(Vector v, std::index_sequence<lane...>) {
-  return __builtin_shufflevector(v, v, ((lane & ~std::size_t{3}) + number)...);
+/// In each four lanes those of these numbers: of `a` 0 to 3, of `b` 4 to 7.
+template <std::size_t i0, std::size_t i1, std::size_t i2, std::size_t i3, class Vector,
+          std::size_t... lane>
+SOFTFOCUS_INLINE Vector choose_lanes(Vector a, Vector b, std::index_sequence<lane...>) {
+  constexpr std::size_t kFrom[4] = {i0, i1, i2, i3};
+  return __builtin_shufflevector(
+      a, b, ((lane & ~std::size_t{3}) + kFrom[lane & 3] % 4 + kFrom[lane & 3] / 4 * kLanes)...);
 }
-template <int number, class Vector>
+template <std::size_t i0, std::size_t i1, std::size_t i2, std::size_t i3, class Vector>
+SOFTFOCUS_INLINE Vector fours_of(Vector a, Vector b) {
+  return choose_lanes<i0, i1, i2, i3>(a, b, std::make_index_sequence<SOFTFOCUS_LANES>{});
+}
+
+/// In each four lanes, all become the one of that number.
+template <std::size_t number, class Vector>
 SOFTFOCUS_INLINE Vector spread(Vector v) {
-  return spread_lanes<number>(v, std::make_index_sequence<SOFTFOCUS_LANES>{});
+  return fours_of<number, number, number, number>(v, v);
 }
 
 /// Each of the first kLanes / 4 lanes, four times.
@@ -470,38 +479,16 @@ SOFTFOCUS_INLINE Floats load_fours(const float* const* from, std::size_t offset)
 #endif
 }
 
-// In each four lanes: a[from], b[from], a[from + 1], b[from + 1].
-template <std::size_t from, std::size_t... lane>
-SOFTFOCUS_INLINE Floats interleave_lanes(Floats a, Floats b, std::index_sequence<lane...>) {
-  return __builtin_shufflevector(
-      a, b, ((lane & ~std::size_t{3}) + from + (lane & 3) / 2 + (lane & 1) * kLanes)...);
-}
-template <std::size_t from>
-SOFTFOCUS_INLINE Floats interleave(Floats a, Floats b) {
-  return interleave_lanes<from>(a, b, std::make_index_sequence<kLanes>{});
-}
-
-// In each four lanes: a[from], a[from + 1], b[from], b[from + 1].
-template <std::size_t from, std::size_t... lane>
-SOFTFOCUS_INLINE Floats join_lanes(Floats a, Floats b, std::index_sequence<lane...>) {
-  return __builtin_shufflevector(
-      a, b, ((lane & ~std::size_t{3}) + from + (lane & 1) + (lane & 2) / 2 * kLanes)...);
-}
-template <std::size_t from>
-SOFTFOCUS_INLINE Floats join(Floats a, Floats b) {
-  return join_lanes<from>(a, b, std::make_index_sequence<kLanes>{});
-}
-
 /// In each four lanes, lane i of vector j and lane j of vector i change places.
 SOFTFOCUS_INLINE void transpose_fours(Floats& v0, Floats& v1, Floats& v2, Floats& v3) {
-  const Floats low01 = interleave<0>(v0, v1);
-  const Floats low23 = interleave<0>(v2, v3);
-  const Floats high01 = interleave<2>(v0, v1);
-  const Floats high23 = interleave<2>(v2, v3);
-  v0 = join<0>(low01, low23);
-  v1 = join<2>(low01, low23);
-  v2 = join<0>(high01, high23);
-  v3 = join<2>(high01, high23);
+  const Floats low01 = fours_of<0, 4, 1, 5>(v0, v1);
+  const Floats low23 = fours_of<0, 4, 1, 5>(v2, v3);
+  const Floats high01 = fours_of<2, 6, 3, 7>(v0, v1);
+  const Floats high23 = fours_of<2, 6, 3, 7>(v2, v3);
+  v0 = fours_of<0, 1, 4, 5>(low01, low23);
+  v1 = fours_of<2, 3, 6, 7>(low01, low23);
+  v2 = fours_of<0, 1, 4, 5>(high01, high23);
+  v3 = fours_of<2, 3, 6, 7>(high01, high23);
 }
 
 // --- transposition ---

@@ -139,6 +139,7 @@ SOFTFOCUS_INLINE Floats level_in_block(const LaneSample& sample, const DecodedTe
                      floats_of(sample.at[2], frame, vector)};
   const TextureShape shape = sample.sample.shape;
   if (shape == TextureShape::flat || shape == TextureShape::array) {
+    if (!lower) return level_of_detail_of_quads(texture, profile, at.x, at.y);
     return level_of_detail_lanes(texture, profile, along_row(at.x, lower), along_row(at.y, lower),
                                  along_left_column(at.x), along_left_column(at.y));
   }

@@ -129,21 +129,25 @@ void add_text_to_hash(Hash& hash, std::string_view text) {
 
 /// A file of the folder, or one of ours.
 OpenedShader open_in_folder(const std::filesystem::path& folder, const std::string& name,
-                            GlslConvention convention) {
+                            const ShaderReading& reading) {
   const std::filesystem::path file = folder / name;
   std::error_code error;
   if (!std::filesystem::exists(file, error)) {
     if (const std::string_view ours = shader_text(name); !ours.empty()) {
-      return open_shader_text(name, "#version 400\n#line 1\n" + std::string{ours}, convention);
+      return open_shader_text(name, "#version 400\n#line 1\n" + std::string{ours}, reading);
     }
   }
-  return open_shader(file, convention);
+  return open_shader(file, reading);
 }
 
-OpenedShader open_pass_shader(const Section& section, const std::string& name,
-                              GlslConvention convention, const ShaderOpener& open) {
+OpenedShader open_pass_shader(Section& section, const std::filesystem::path& folder,
+                              const ShaderOpener& open) {
+  const std::string name = read_text(section, "shader", "");
+  ShaderReading reading = read_shader_keys(section, folder);
+  reading.convention =
+      read_choice(section, "convention", GlslConvention::recognised, kGlslConventions);
   try {
-    return open(name, convention);
+    return open(name, reading);
   } catch (const SceneError& fault) {
     fail_at(section, "shader", fault.what());
   }
@@ -326,8 +330,8 @@ void add_constants(PipelinePass& pass, const std::vector<GlslParameter>& paramet
 }
 
 OpenedPipeline read_pipeline(const std::filesystem::path& file) {
-  const auto open = [&](const std::string& name, GlslConvention convention) {
-    return open_in_folder(file.parent_path(), name, convention);
+  const auto open = [&](const std::string& name, const ShaderReading& reading) {
+    return open_in_folder(file.parent_path(), name, reading);
   };
   const std::string name = file.string();
   OpenedPipeline opened = read_pipeline(read_file_text(file, kMostPipelineBytes), name, open);
@@ -357,10 +361,7 @@ OpenedPipeline read_pipeline(const std::string& text, const std::string& name,
     if (!has_key(section, "shader")) {
       fail_at(section, "shader", "is missing; the name of a fragment shader would be right");
     }
-    const GlslConvention convention =
-        read_choice(section, "convention", GlslConvention::recognised, kGlslConventions);
-    shaders.push_back(
-        open_pass_shader(section, read_text(section, "shader", ""), convention, open));
+    shaders.push_back(open_pass_shader(section, reading.folder, open));
     OpenedShader& shader = shaders.back();
     for (const std::uint32_t word : shader.words) add_to_hash(reading.hash, word);
     std::move(shader.files.begin(), shader.files.end(), std::back_inserter(reading.opened.files));

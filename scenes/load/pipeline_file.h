@@ -23,7 +23,7 @@ struct OpenedPipeline {
 OpenedPipeline read_pipeline(const std::filesystem::path& file);
 
 /// Opens a pass's shader by its name in the pipeline. Throws SceneError and ShaderError.
-using ShaderOpener = std::function<OpenedShader(const std::string& name, GlslConvention)>;
+using ShaderOpener = std::function<OpenedShader(const std::string& name, const ShaderReading&)>;
 
 /// A pipeline's text that is in no file; `name` is for errors. Its textures' files are relative to
 /// where the program runs.

@@ -25,9 +25,9 @@ std::vector<std::uint32_t> words_of(OpenedShader opened, Scene& scene) {
 std::vector<std::uint32_t> words_of_file(Section& section, std::string_view key,
                                          const std::filesystem::path& directory, ShaderStage stage,
                                          Scene& scene) {
-  return words_of(
-      open_shader(directory / read_text(section, key, ""), GlslConvention::recognised, stage),
-      scene);
+  ShaderReading reading = read_shader_keys(section, directory);
+  reading.stage = stage;
+  return words_of(open_shader(directory / read_text(section, key, ""), reading), scene);
 }
 
 bool is_sampler(const ShaderUniform& of) { return is_texture(of); }
@@ -214,7 +214,7 @@ void read_shaders(Section& section, const std::filesystem::path& directory,
         has_vertex
             ? words_of_file(section, "vertex", directory, ShaderStage::vertex, scene)
             : open_shader_text("the usual vertex shader", std::string{usual_surface_vertex()},
-                               GlslConvention::recognised, ShaderStage::vertex)
+                               {.stage = ShaderStage::vertex})
                   .words;
     key = "fragment";
     ShaderPair pair = make_shader_pair(

@@ -6,6 +6,7 @@
 
 #include "raster/shaders/shader_error.h"
 #include "scenes/files/file_bytes.h"
+#include "scenes/load/toml_reading.h"
 
 namespace softfocus {
 namespace {
@@ -22,26 +23,50 @@ std::optional<std::string> read_include(const std::string& path) {
   return read_file_bytes(path, kMostGlslBytes);
 }
 
+std::map<std::string, std::string> read_defines(Section section) {
+  std::map<std::string, std::string> defines;
+  if (section.table == nullptr) return defines;
+  for (const auto& [key, node] : *section.table) {
+    const std::string name{key.str()};
+    if (const auto flag = node.value_exact<bool>()) {
+      defines[name] = *flag ? "1" : "0";
+    } else if (const auto number = node.value_exact<std::int64_t>()) {
+      defines[name] = std::to_string(*number);
+    } else {
+      defines[name] = read_text(section, name, "");
+    }
+  }
+  return defines;
+}
+
 }  // namespace
 
-OpenedShader open_shader(const std::filesystem::path& file, GlslConvention convention,
-                         ShaderStage stage) {
+ShaderReading read_shader_keys(Section& section, const std::filesystem::path& folder) {
+  ShaderReading reading{.defines = read_defines(read_section(section, "defines"))};
+  for (const std::string& from : read_texts(section, "include")) {
+    reading.include_folders.push_back((folder / from).string());
+  }
+  return reading;
+}
+
+OpenedShader open_shader(const std::filesystem::path& file, const ShaderReading& reading) {
   check_no_pipe(file);
   std::string bytes = read_file_bytes(file, kMostShaderBytes);
-  if (!is_spirv(bytes)) {
-    return open_shader_text(file.string(), std::move(bytes), convention, stage);
-  }
+  if (!is_spirv(bytes)) return open_shader_text(file.string(), std::move(bytes), reading);
   OpenedShader opened;
   opened.words = spirv_words(std::as_bytes(std::span{bytes}));
   opened.files.push_back(file.string());
   return opened;
 }
 
-OpenedShader open_shader_text(std::string name, std::string text, GlslConvention convention,
-                              ShaderStage stage) {
+OpenedShader open_shader_text(std::string name, std::string text, const ShaderReading& reading) {
   if (!missing_glsl().empty()) throw ShaderError(name + ": " + std::string{missing_glsl()});
-  const GlslSource source{
-      .stage = stage, .name = std::move(name), .text = std::move(text), .convention = convention};
+  const GlslSource source{.stage = reading.stage,
+                          .name = std::move(name),
+                          .text = std::move(text),
+                          .convention = reading.convention,
+                          .defines = reading.defines,
+                          .include_folders = reading.include_folders};
   CompiledGlsl compiled = compile_glsl(source, read_include);
   OpenedShader opened{std::move(compiled.words),      compiled.convention,
                       std::move(compiled.parameters), std::move(compiled.warnings),

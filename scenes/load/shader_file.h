@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -28,12 +29,25 @@ struct OpenedShader {
   std::vector<std::string> files{};  ///< that were read
 };
 
+/// What a file does not say itself.
+struct ShaderReading {
+  ShaderStage stage = ShaderStage::fragment;
+  GlslConvention convention = GlslConvention::recognised;
+  std::map<std::string, std::string> defines{};
+  std::vector<std::string> include_folders{};  ///< as GlslSource has them
+};
+
+struct Section;
+
+/// The keys `defines` (of texts, whole numbers, or flags, as 1 or 0) and `include` of a pass or a
+/// material, whose file is in the folder.
+ShaderReading read_shader_keys(Section& section, const std::filesystem::path& folder);
+
 /// Throws SceneError for a file that cannot be read, ShaderError for one that is no shader.
-OpenedShader open_shader(const std::filesystem::path& file, GlslConvention convention,
-                         ShaderStage stage = ShaderStage::fragment);
+OpenedShader open_shader(const std::filesystem::path& file, const ShaderReading& reading = {});
 
 /// GLSL that is in no file; `name` is for errors.
-OpenedShader open_shader_text(std::string name, std::string text, GlslConvention convention,
-                              ShaderStage stage = ShaderStage::fragment);
+OpenedShader open_shader_text(std::string name, std::string text,
+                              const ShaderReading& reading = {});
 
 }  // namespace softfocus

@@ -10,17 +10,16 @@ SOFTFOCUS_INLINE Vec3Lanes load_vectors(const std::vector<glm::vec3>& vectors, I
   return {gather(first, at, every), gather(first + 1, at, every), gather(first + 2, at, every)};
 }
 
-// The red of a holed surface's opacity texture; u is a varying, and v the next.
+// The red of a holed surface's opacity texture; u is varying `first`, v the next.
 template <class Quads>
-SOFTFOCUS_INLINE Floats opacity_texels(const Quads& in, std::size_t u,
+SOFTFOCUS_INLINE Floats opacity_texels(const Quads& in, std::size_t first,
                                        const DecodedTexture& texture, const Sampler& sampler,
                                        const Profile& profile) {
-  const std::size_t v = u + 1;
+  const Floats u = in.varying(first), v = in.varying(first + 1);
   alignas(64) std::array<std::array<float, kLanes>, 3> place;
-  store(place[0].data(), in.varying(u));
-  store(place[1].data(), in.varying(v));
-  store(place[2].data(),
-        level_of_detail_lanes(texture, profile, in.ddx(u), in.ddx(v), in.ddy(u), in.ddy(v)));
+  store(place[0].data(), u);
+  store(place[1].data(), v);
+  store(place[2].data(), level_of_detail_of_quads(texture, profile, u, v));
   RgbaLanes texels;
   sample_lanes(texture, sampler, profile, {place[0].data(), place[1].data(), place[2].data()}, 1,
                &texels);

@@ -143,11 +143,10 @@ struct SurfaceFragmentLanes {
   SOFTFOCUS_INLINE void inputs(const Quads& in, const Put& put) const {
     Vec3Lanes colour = base(in);
     if (uvs && variant.textured) {
-      const std::size_t u = kTextureU, v = u + 1;
-      put(kU, in.varying(u));
-      put(kV, in.varying(v));
-      put(kLod, level_of_detail_lanes(*stage.decoded, stage.profile, in.ddx(u), in.ddx(v),
-                                      in.ddy(u), in.ddy(v)));
+      const Floats u = in.varying(kTextureU), v = in.varying(kTextureU + 1);
+      put(kU, u);
+      put(kV, v);
+      put(kLod, level_of_detail_of_quads(*stage.decoded, stage.profile, u, v));
     }
     if constexpr (specular) {
       const Vec3Lanes highlight = highlights(in);

@@ -232,6 +232,22 @@ TEST_CASE("values, parameters and sizes reach the shader") {
   CHECK(shown("", "0.0", "width = \"2 * width\"\nheight = 4\n" + again) == 18.0f * 16.0f + 4.0f);
 }
 
+TEST_CASE("a pass has macros, and folders for what it includes") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const Files files;
+  std::filesystem::create_directory(files.directory.file("lib"));
+  files.write("lib/sum.glsl", "#define SUM (float(A) + B + float(C))\n");
+  const OpenedPipeline opened =
+      read_pipeline(files.pipeline("[[pass]]\nshader = \"a.frag\"\ninclude = [\"lib\"]\n"
+                                   "defines = { A = 2, B = \"0.5\", C = true }\n",
+                                   "#include \"sum.glsl\"", "colour = vec4(SUM);"));
+  CHECK(red_at(drawn(opened, random_scene_image(3, 3, 1)), 0, 0) == 3.5f);
+  CHECK(opened.files.back().ends_with("a.frag"));
+  CHECK(contains(
+      error_of(files.pipeline("[[pass]]\nshader = \"a.frag\"\ndefines = { A = 0.5 }\n", "", "")),
+      "a.toml:3: pass.defines.A: is a number"));
+}
+
 TEST_CASE("what reads no lens is told apart") {
   if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
   const Files files;

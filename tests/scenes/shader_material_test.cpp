@@ -136,10 +136,11 @@ TEST_CASE("alpha is the depth, and a discarded pixel shows what is behind") {
   const Files files;
   files.write("red.frag",
               "#version 330\nin vec2 vUv;\nout vec4 c;\nuniform float amount;\nvoid main() {\n"
-              "  if (gl_FragCoord.y < 50.0) discard;\n  c = vec4(amount, 0, 0, 0.25);\n}\n");
+              "  if (gl_FragCoord.y < LEAST) discard;\n  c = vec4(amount, 0, 0, 0.25);\n}\n");
   const Scene scene = files.read(
       "background = [0, 0, 1]\n[camera]\nposition = [0, 0, 3]\nfar_m = 50\n[material.m]\n"
-      "fragment = \"red.frag\"\n[material.m.uniforms]\namount = 0.5\n[[object]]\n"
+      "fragment = \"red.frag\"\ndefines = { LEAST = \"50.0\" }\n"
+      "[material.m.uniforms]\namount = 0.5\n[[object]]\n"
       "material = \"m\"\nshape = \"cube\"\nsize = 3\nposition = [0, 0, -1.5]\n");
   ThreadPool pool{1};
   const Image picture =

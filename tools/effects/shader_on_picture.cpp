@@ -175,6 +175,15 @@ void add_shader_options(CLI::App& parser, ShaderOptions& options) {
   add_choice(parser, "--convention",
              "Where the shaders come from (default: recognised by their text)", kGlslConventions,
              options.convention);
+  add_repeatable_value(
+      parser, "--define", "NAME[=VALUE]", "A macro of the shaders, as #define has it (default: 1)",
+      [&options](const std::string& text) {
+        const std::size_t end = std::min(text.find('='), text.size());
+        options.defines[text.substr(0, end)] = end < text.size() ? text.substr(end + 1) : "1";
+      });
+  add_repeatable_value(
+      parser, "--include", "FOLDER", "Where #include looks for what is not beside the shader",
+      [&options](const std::string& text) { options.include_folders.push_back(text); });
 }
 
 std::vector<std::string> shader_inputs(const ShaderOptions& options) {
@@ -191,7 +200,9 @@ Image with_shaders(const ShaderOptions& options, Image picture, const Profile& p
   std::vector<ReadShader> all;
   for (const std::string& file : options.files) {
     OpenedShader opened =
-        open_shader(file, options.convention.value_or(GlslConvention::recognised));
+        open_shader(file, {.convention = options.convention.value_or(GlslConvention::recognised),
+                           .defines = options.defines,
+                           .include_folders = options.include_folders});
     for (const std::string& warning : opened.warnings) warn(warning);
     all.push_back(
         {make_shader(std::move(opened.words)), opened.convention, std::move(opened.parameters)});

@@ -1,6 +1,7 @@
 #pragma once
 // A user's fragment shaders on a picture: `apply --shader`.
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,9 +19,11 @@ struct ShaderOptions {
   std::vector<std::string> textures{};         ///< NAME=FILE
   std::optional<std::string> pipeline{};       ///< behind them
   std::optional<GlslConvention> convention{};  ///< none: recognised
+  std::map<std::string, std::string> defines{};
+  std::vector<std::string> include_folders{};
 };
 
-/// Adds --shader, --pipeline, --set, --texture and --convention.
+/// Adds --shader, --pipeline, --set, --texture, --convention, --define and --include.
 void add_shader_options(CLI::App& parser, ShaderOptions& options);
 
 /// The files of the shaders, of their textures and of the pipeline.

@@ -13,12 +13,16 @@ namespace softfocus {
 
 Json answer_shader(Page& /*page*/, const Json& request) {
   const std::string& name = request.at("name").text();
-  const auto open = [&](const std::string& wanted, GlslConvention convention) {
+  const auto open = [&](const std::string& wanted, const ShaderReading& reading) {
     if (wanted != name) {
       throw SceneError("'" + wanted + "' is not here; \"" + name + "\" would be right");
     }
+    if (!reading.defines.empty() || !reading.include_folders.empty()) {
+      throw SceneError("on the page the shader's text has to have all: no `defines`, no `include`");
+    }
     OpenedShader shader = compiled_shader(request.at("compiled"));
-    if (convention != GlslConvention::recognised && convention != shader.convention) {
+    if (reading.convention != GlslConvention::recognised &&
+        reading.convention != shader.convention) {
       throw SceneError("the page recognises conventions by the text, which is taken for " +
                        std::string{name_of(shader.convention)});
     }

@@ -39,10 +39,12 @@ std::string_view name_of(GlslConvention convention);
 
 struct GlslSource {
   ShaderStage stage = ShaderStage::fragment;
-  std::string name{};  ///< for errors; its folder is where #include "..." looks
+  std::string name{};  ///< for errors; its folder is where #include looks first
   std::string text{};
   GlslConvention convention = GlslConvention::recognised;
   std::map<std::string, std::string> defines{};
+  /// Where #include looks next, in their order.
+  std::vector<std::string> include_folders{};
   /// Types of the samplers that a convention declares, other than sampler2D: iChannel0 ->
   /// samplerCube.
   std::map<std::string, std::string> samplers{};

@@ -82,20 +82,21 @@ std::string without_comments(std::string text) {
   return text;
 }
 
-/// Joins lines that end in a backslash, and makes up for their number behind them. A comment to the
-/// end of a line goes on in none.
+/// Joins lines that end in a backslash, and makes up for their number behind them. Not in comments:
+/// one to the end of a line goes on in none, and glslang refuses a backslash there.
 std::string spliced(const std::string& text) {
   if (text.find("\\\n") == std::string::npos) return text;
   const std::string bare = without_comments(text);
   std::string out;
   std::size_t owed = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '\\' && i + 1 < text.size() && text[i + 1] == '\n' && bare[i] == '\\') {
+    const bool ends_line = text[i] == '\\' && i + 1 < text.size() && text[i + 1] == '\n';
+    if (ends_line && bare[i] == '\\') {
       ++owed;
       ++i;
       continue;
     }
-    out += text[i];
+    out += ends_line ? ' ' : text[i];
     if (text[i] == '\n') {
       out.append(owed, '\n');
       owed = 0;
@@ -148,7 +149,9 @@ std::string line_directive(int line, const std::string& name) {
 /// preprocessor comes past it, not behind an #if that leaves it out.
 class Includes {
  public:
-  Includes(const GlslReader& read, std::vector<std::string>& files) : read_(read), files_(files) {}
+  Includes(const GlslReader& read, const std::vector<std::string>& folders,
+           std::vector<std::string>& files)
+      : read_(read), folders_(folders), files_(files) {}
 
   std::string expanded(const std::string& text, const std::string& name) {
     bytes_ += text.size();
@@ -180,15 +183,16 @@ class Includes {
 
  private:
   std::string included(std::string_view header, const std::string& includer, int line) {
-    const bool is_local = header.size() > 2 && header.front() == '"' && header.back() == '"';
+    const bool is_quoted = header.size() > 2 && header.front() == '"' && header.back() == '"';
     const bool is_angled = header.size() > 2 && header.front() == '<' && header.back() == '>';
+    const bool is_bare = header.find_first_of("\"<> \t") == header.npos && !header.empty();
     const auto error = [&](const std::string& why) {
       missing.push_back(why);
       return line_directive(line, includer) + "#error " + std::string(kMissingInclude) + " " +
              std::to_string(missing.size() - 1) + "\n";
     };
-    if (!is_local && !is_angled) return error("#include wants \"FILE\"");
-    const std::string wanted(header.substr(1, header.size() - 2));
+    if (!is_quoted && !is_angled && !is_bare) return error("#include wants \"FILE\"");
+    const std::string wanted(is_bare ? header : header.substr(1, header.size() - 2));
     if (is_angled) {
       if (const char* const ours = three_include(wanted)) {
         includes_three = true;
@@ -198,25 +202,32 @@ class Includes {
     if (wanted.front() == '/' || wanted.find(':') != std::string::npos) {
       return error("#include " + wanted + ": the path must be relative");
     }
-    const std::string path = (std::filesystem::path(includer).parent_path() / wanted)
-                                 .lexically_normal()
-                                 .generic_string();
-    if (std::find(chain_.begin(), chain_.end(), path) != chain_.end()) {
-      return error("#include " + wanted + ": the file includes itself");
-    }
     if (chain_.size() >= kMostIncludeDepth || ++count_ > kMostIncludes) {
       return error("#include " + wanted + ": too many files include others");
     }
-    const std::optional<std::string> text = read_ ? read_(path) : std::nullopt;
-    if (!text) {
-      return error("#include " + wanted + ": cannot read " + path +
-                   (is_angled ? ", and it is none of three.js' that are known here" : ""));
+    const std::string beside = path_in(std::filesystem::path(includer).parent_path(), wanted);
+    std::vector<std::string> paths{beside};
+    for (const std::string& folder : folders_) paths.push_back(path_in(folder, wanted));
+    for (const std::string& path : paths) {
+      if (std::find(chain_.begin(), chain_.end(), path) != chain_.end()) {
+        return error("#include " + wanted + ": the file includes itself");
+      }
+      const std::optional<std::string> text = read_ ? read_(path) : std::nullopt;
+      if (!text) continue;
+      if (std::find(files_.begin(), files_.end(), path) == files_.end()) files_.push_back(path);
+      return line_directive(1, path) + expanded(cleaned(*text, path), path);
     }
-    if (std::find(files_.begin(), files_.end(), path) == files_.end()) files_.push_back(path);
-    return line_directive(1, path) + expanded(cleaned(*text, path), path);
+    return error("#include " + wanted + ": cannot read " + beside +
+                 (folders_.empty() ? "" : ", nor is it in the folders to look in") +
+                 (is_angled ? ", and it is none of three.js' that are known here" : ""));
+  }
+
+  static std::string path_in(const std::filesystem::path& folder, const std::string& wanted) {
+    return (folder / wanted).lexically_normal().generic_string();
   }
 
   const GlslReader& read_;
+  const std::vector<std::string>& folders_;
   std::vector<std::string>& files_;
   std::vector<std::string> chain_{};
   std::size_t bytes_ = 0;
@@ -494,11 +505,11 @@ namespace {
 std::string definitions(const GlslSource& source) {
   std::string made;
   for (const auto& [name, value] : source.defines) {
-    if (name.empty() || !std::all_of(name.begin(), name.end(), is_word) ||
-        value.find_first_of("\n\r\\") != std::string::npos) {
-      throw ShaderError(
-          source.name +
-          ": a definition has to be a name, and a value of one line without a backslash");
+    const bool is_name = !name.empty() && std::all_of(name.begin(), name.end(), is_word) &&
+                         std::isdigit(static_cast<unsigned char>(name.front())) == 0;
+    if (!is_name || value.find_first_of("\n\r\\") != std::string::npos) {
+      throw ShaderError(source.name + ": the definition '" + name +
+                        "' has to be a name, and its value a line without a backslash");
     }
     made.append("#define ").append(name).append(" ").append(value).append("\n");
   }
@@ -507,7 +518,7 @@ std::string definitions(const GlslSource& source) {
 
 GlslText hlsl_text(const GlslSource& source, const GlslReader& read) {
   GlslText out{.convention = GlslConvention::plain, .said_version = true, .is_hlsl = true};
-  Includes includes(read, out.files);
+  Includes includes(read, source.include_folders, out.files);
   const std::string text =
       spliced(includes.expanded(cleaned(source.text, source.name), source.name));
   out.missing_includes = std::move(includes.missing);
@@ -524,7 +535,7 @@ GlslText glsl_text(const GlslSource& source, const GlslReader& read, bool raise,
   if (is_hlsl(source)) return hlsl_text(source, read);
   GlslText out;
   std::string text = cleaned(source.text, source.name);
-  Includes includes(read, out.files);
+  Includes includes(read, source.include_folders, out.files);
   text = includes.expanded(text, source.name);
   {
     const std::vector<GlslToken> tokens = glsl_tokens(text);

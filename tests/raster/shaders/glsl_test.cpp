@@ -151,6 +151,9 @@ TEST_CASE(
   CHECK(has_line(compiled_text("#version 330\nout vec4 o;\n#define A \\\n 1.0\nvoid main() {\n"
                                "  // a comment goes on \\\n  o = vec4(A);\n}\n"),
                  7));
+  CHECK(has_line(compiled_text("/* goes \\\n on */\nprecision highp float;\nvoid main() {\n"
+                               "  // goes on \\\n  gl_FragColor = vec4(1.0);\n}\n"),
+                 6));
   CHECK(error_of_text(std::string("void main() {}\n\0", 16)) ==
         "mine.frag:2: a byte of value 0; this is no text");
   CHECK(error_of_text("\xFF\xFEv") == "mine.frag:1: the text is UTF-16; it would have to be UTF-8");
@@ -267,6 +270,21 @@ TEST_CASE("an include is read beside the file that includes it, and errors name 
   }
 }
 
+TEST_CASE("an include may lie in other folders, which are looked in in their order") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  GlslSource source;
+  source.name = "shaders/mine.frag";
+  source.include_folders = {"one", "two/"};
+  const TextFiles files{{"shaders/a", "#define A 1.0\n"},
+                        {"one/a", "#error\n"},
+                        {"one/b", "#include c\n"},
+                        {"two/b", "#error\n"},
+                        {"two/c", "#define C 2.0\n"}};
+  source.text = "#include \"a\"\n#include <b>\nvoid main() { gl_FragColor = vec4(A + C); }\n";
+  CHECK(compiled_with(source, files).files ==
+        std::vector<std::string>{"shaders/a", "one/b", "two/c"});
+}
+
 TEST_CASE("an include that cannot be is an error where the preprocessor comes to it") {
   if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
   GlslSource source;
@@ -283,6 +301,9 @@ TEST_CASE("an include that cannot be is an error where the preprocessor comes to
         "a:2: #include a: the file includes itself");
   CHECK(error_with(source, {{"a", "#ifndef A\n#define A\n#include \"a\"\n#endif\n"}}) ==
         "a:3: #include a: the file includes itself");
+  source.include_folders = {"lib"};
+  CHECK(error_with(source) ==
+        "mine.frag:1: #include a: cannot read a, nor is it in the folders to look in");
   TextFiles many;
   for (int i = 0; i < 40; ++i) {
     many[std::string("a") + std::string(static_cast<std::size_t>(i), 'a')] =
@@ -426,7 +447,10 @@ TEST_CASE("definitions reach the text, and nothing but definitions") {
   CHECK(error_with(source) == "none");
   source.defines["SIZE"] = "2.0\n#error";
   CHECK(error_with(source) ==
-        "mine.frag: a definition has to be a name, and a value of one line without a backslash");
+        "mine.frag: the definition 'SIZE' has to be a name, and its value a line without a "
+        "backslash");
+  source.defines = {{"1x", ""}};
+  CHECK(error_with(source).starts_with("mine.frag: the definition '1x' has to be a name"));
 }
 
 TEST_CASE("texts that would take a compiler's stack or memory are refused in a line") {

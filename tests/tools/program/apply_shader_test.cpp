@@ -40,16 +40,6 @@ struct Shaders {
   }
 };
 
-/// A shader of ours with what it includes.
-std::string whole_shader(const std::string& file) {
-  std::string text = read_file(kRoot + file);
-  const std::string include = "#include \"weights.glsl\"";
-  REQUIRE(contains(text, include));
-  text.replace(text.find(include), include.size(),
-               read_file(std::string{kRoot} + "dof/weights.glsl"));
-  return "#version 400\n" + text;
-}
-
 std::string number_in(const std::string& json, const std::string& key) {
   const auto at = json.find("\"" + key + "\": ");
   REQUIRE(at != json.npos);
@@ -67,12 +57,15 @@ TEST_CASE("apply --shader: two_pass.frag has the bits of --method two-pass") {
       render("figures", filtered, {"--method", "two-pass", "--max-coc", "7.5", "--json"}));
   REQUIRE(run.status == 0);
   const std::string shader =
-      all.shader("two_pass.frag", whole_shader("dof/two_pass/two_pass.frag"));
-  const Words lens{"--set", "radius_at_infinity_px=" + number_in(run.out, "radius_at_infinity_px"),
-                   "--set", "focus_m=" + number_in(run.out, "focus_m"),
-                   "--set", "max_coc_px=7.5",
-                   "--set", "leak=1",
-                   "--set", "taps=7"};
+      all.shader("two_pass.frag",
+                 "#version 400\n" + read_file(std::string{kRoot} + "dof/two_pass/two_pass.frag"));
+  const Words lens{
+      "--include", std::string{kRoot} + "dof",
+      "--set",     "radius_at_infinity_px=" + number_in(run.out, "radius_at_infinity_px"),
+      "--set",     "focus_m=" + number_in(run.out, "focus_m"),
+      "--set",     "max_coc_px=7.5",
+      "--set",     "leak=1",
+      "--set",     "taps=7"};
   Words across = lens, down = lens;
   across.insert(across.end(), {"--set", "direction=1,0"});
   down.insert(down.end(), {"--set", "direction=0,1"});
@@ -84,6 +77,17 @@ TEST_CASE("apply --shader: two_pass.frag has the bits of --method two-pass") {
   second.insert(second.end(), down.begin(), down.end());
   REQUIRE(run_program(second).status == 0);
   CHECK(Shaders::texels(all.directory.file("down.npy")) == Shaders::texels(filtered));
+}
+
+TEST_CASE("apply --shader: macros by --define") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const Shaders all;
+  const std::string shader = all.shader(
+      "mine.frag", "#ifdef RED\nvoid main() { gl_FragColor = vec4(RED, 0, 0, 1); }\n#endif\n");
+  CHECK(all.applied(shader, {"--define", "RED"}) == all.applied(shader, {"--define", "RED=1"}));
+  CHECK(all.applied(shader, {"--define", "RED"}) != all.applied(shader, {"--define", "RED=2"}));
+  check_refused(all.directory, all.apply(shader, "none.npy", {"--define", "=2"}), 1,
+                {"mine.frag: the definition '' has to be a name"});
 }
 
 TEST_CASE("apply --shader: the same bits on every unit, and by threads") {
