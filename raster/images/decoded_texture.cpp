@@ -178,8 +178,11 @@ DecodedTexture decode_texture(const Texture& texture, const Profile& profile, Is
   DecodedTexture decoded;
   decoded.source = &texture;
   decoded.level_count = static_cast<int>(texture.levels.size());
+  // Levels of detail need it also of a texture that is not decoded.
   add_level(decoded.u, 0, texture.levels[0].width);
   add_level(decoded.v, 0, texture.levels[0].height);
+  const float width = decoded.u.sizes[0], height = decoded.v.sizes[0];
+  decoded.quad_sizes = {width, width, height, height};
   const bool has_own_filter =
       texture.shape == TextureShape::flat || texture.shape == TextureShape::array;
   if (has_own_filter && profile.texture_unit == TextureUnit::softpipe) return decoded;

@@ -42,6 +42,8 @@ struct DecodedTexture {
   bool are_whole = false;
   DecodedAxis u, v;
   DecodedAxis w;  ///< of a volume's slices
+  /// Width, width, height, height of level 0, as largest_square_of_quads() takes them.
+  std::array<float, 4> quad_sizes{};
   /// Where each level's texels start in `texels`, in floats. Rows lie without gaps, and so do
   /// slices. Faces of a cube have a border of one texel, which lies before their first: what is
   /// beyond an edge or a corner (sliced_texture.h).

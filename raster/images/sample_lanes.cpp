@@ -225,10 +225,15 @@ SOFTFOCUS_INLINE bool is_planned_quickly(const DecodedTexture& texture, const Sa
          texture.u.are_powers_of_two && texture.v.are_powers_of_two;
 }
 
-/// standard_taps() but for the second texel.
+/// Below this magnitude a coordinate is taken as it is, and so are its texels at all levels.
+SOFTFOCUS_INLINE float most_usual(const DecodedTexture& texture) {
+  return 0x1p22f / std::max(texture.u.sizes[0], texture.v.sizes[0]);
+}
+
+/// standard_taps() of usual coordinates, but for the second texel.
 template <bool fixed_8>
 SOFTFOCUS_INLINE TapLanes repeated_taps(Floats coordinate, Floats size, Ints last) {
-  Floats position = smaller(larger(coordinate * size, splat(-0x1p22f)), splat(0x1p22f)) - 0.5f;
+  Floats position = coordinate * size - 0.5f;
   if (fixed_8) position = nearest(position * 256.0f) * (1.0f / 256.0f);
   const Floats base = floor(position);
   return {truncate(base) & last, splat(0), position - base};
@@ -248,11 +253,11 @@ SOFTFOCUS_INLINE void find_repeating(const PlaceLanes& place, std::size_t level,
   const Ints start = splat(texture.starts[level]), row = columns << 2;
   const Ints upper = start + v.first * row, first = upper + (u.first << 2);
   store(fetch.offsets[0], first);
-  fetch.neighbours = !any(u.first == last_u);
-  fetch.square_row = 0;
-  if (!any((u.first == last_u) | (v.first == last_v))) {
-    fetch.square_row = row[0];
-  } else {
+  fetch.neighbours = true;
+  fetch.square_row = row[0];
+  if (any((u.first == last_u) | (v.first == last_v))) {
+    fetch.neighbours = !any(u.first == last_u);
+    fetch.square_row = 0;
     const Ints second_u = (u.first + 1) & last_u, second_v = (v.first + 1) & last_v;
     const Ints lower = start + second_v * row;
     store(fetch.offsets[1], upper + (second_u << 2));
@@ -447,15 +452,24 @@ template <LaneArithmetic arithmetic, TextureShape shape>
   const int last = texture.level_count - 1;
   const bool trilinear = sampler.filter == Filter::trilinear;
   const bool is_quick = is_planned_quickly<arithmetic, shape>(texture, sampler);
+  const float usual = most_usual(texture);
   std::array<SamplePlan, kIsVolume ? 2 * kMostSampled : kMostSampled> plans;
   for (int i = 0; i < count; ++i) {
-    const PlaceLanes place = find_place<arithmetic, shape>(texture, sampler, points, i);
     const LevelLanes levels =
         choose_levels<arithmetic>(load(points.lod + i * kLanes), last, trilinear);
-    if constexpr (shape == TextureShape::flat) {
-      if (is_quick && plan_repeating<arithmetic>(place, levels, plans[static_cast<std::size_t>(i)]))
+    if (is_quick) {
+      const PlaceLanes as_it_is{.texture = texture,
+                                .sampler = sampler,
+                                .u = load(points.u + i * kLanes),
+                                .v = load(points.v + i * kLanes),
+                                .w = splat(0.0f),
+                                .slice = splat(0)};
+      if (all((absolute(as_it_is.u) < usual) & (absolute(as_it_is.v) < usual)) &&
+          plan_repeating<arithmetic>(as_it_is, levels, plans[static_cast<std::size_t>(i)])) {
         continue;
+      }
     }
+    const PlaceLanes place = find_place<arithmetic, shape>(texture, sampler, points, i);
     if (sampler.filter == Filter::nearest) {
       colours[i] = sample_nearest<arithmetic, shape>(place, levels.first);
     } else {

@@ -19,9 +19,10 @@ SOFTFOCUS_INLINE Floats largest_square(const DecodedTexture& texture, Floats du_
 }
 
 SOFTFOCUS_INLINE Floats log2_linear(Floats x) {
-  const Bits bits = as_bits(x);
-  const Floats mantissa = as_floats((bits & 0x007FFFFFu) | 0x3F800000u);
-  return to_floats(as_ints(bits >> 23 & 0xFFu) - 128) + mantissa;
+  // Shifts instead of masks, which would have to be loaded.
+  const Bits bits = as_bits(x) << 1;
+  const Floats mantissa = as_floats(bits << 8 >> 9 | as_bits(splat(1.0f)));
+  return (to_floats(as_ints(bits >> 24)) - 128.0f) + mantissa;
 }
 
 SOFTFOCUS_INLINE Floats log2_of_root_by_bits(Floats x) {
@@ -59,12 +60,14 @@ SOFTFOCUS_INLINE Floats level_of_detail_lanes(const DecodedTexture& texture, con
   return lod;
 }
 
-/// largest_square() of quads of 2x2 pixels at these places, in each quad's first lane.
+/// largest_square() of quads of 2x2 pixels at these places, in each quad's first lane; the others
+/// mean nothing. All differences lie in one vector, as they are the same for a quad's pixels.
 SOFTFOCUS_INLINE Floats largest_square_of_quads(const DecodedTexture& texture, Floats u, Floats v) {
-  const Floats sizes = fours_of<0, 0, 4, 4>(splat(texture.u.sizes[0]), splat(texture.v.sizes[0]));
+  std::array<const float*, kLanes / 4> sizes;
+  sizes.fill(texture.quad_sizes.data());
   // To the right and down, first of u, then of v.
   const Floats steps = fours_of<1, 2, 5, 6>(u, v) - fours_of<0, 0, 4, 4>(u, v);
-  const Floats texels = steps * sizes;
+  const Floats texels = steps * load_fours(sizes.data(), 0);
   const Floats squares = texels * texels;
   const Floats sums = squares + fours_of<2, 3, 0, 1>(squares, squares);
   return larger(sums, spread<1>(sums));

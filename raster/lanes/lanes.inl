@@ -188,6 +188,12 @@ SOFTFOCUS_INLINE Ints multiply_add_pairs(Ints a, Ints b) {
 #endif
 }
 
+/// Their differences, modulo 2^16.
+SOFTFOCUS_INLINE Ints subtract_pairs(Ints a, Ints b) {
+  using Shorts [[gnu::vector_size(4 * SOFTFOCUS_LANES)]] = std::uint16_t;
+  return (Ints)((Shorts)a - (Shorts)b);
+}
+
 SOFTFOCUS_INLINE Floats to_floats(Ints v) { return __builtin_convertvector(v, Floats); }
 /// The integer part. Needs values that an int32 holds.
 SOFTFOCUS_INLINE Ints truncate(Floats v) { return __builtin_convertvector(v, Ints); }
@@ -436,7 +442,7 @@ SOFTFOCUS_INLINE Ints compress(Ints v, Compression kept) { return (Ints)pick((Fl
 
 // --- fours: vectors as kLanes / 4 times four lanes ---
 
-/// In each four lanes those of these numbers: of `a` 0 to 3, of `b` 4 to 7.
+/// In each four lanes the k-th is lane ik of `a` (0 to 3), or lane ik - 4 of `b` (4 to 7).
 template <std::size_t i0, std::size_t i1, std::size_t i2, std::size_t i3, class Vector,
           std::size_t... lane>
 SOFTFOCUS_INLINE Vector choose_lanes(Vector a, Vector b, std::index_sequence<lane...>) {

@@ -140,7 +140,7 @@ SOFTFOCUS_INLINE Floats level_in_block(const LaneSample& sample, const DecodedTe
   const TextureShape shape = sample.sample.shape;
   if (shape == TextureShape::flat || shape == TextureShape::array) {
     if (!lower) return level_of_detail_of_quads(texture, profile, at.x, at.y);
-    return level_of_detail_lanes(texture, profile, along_row(at.x, lower), along_row(at.y, lower),
+    return level_of_detail_lanes(texture, profile, along_row(at.x, true), along_row(at.y, true),
                                  along_left_column(at.x), along_left_column(at.y));
   }
   if (shape == TextureShape::cube && profile.texture_unit == TextureUnit::llvmpipe) {

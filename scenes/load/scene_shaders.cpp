@@ -201,7 +201,10 @@ void read_shaders(Section& section, const std::filesystem::path& directory,
                   const NamedSurfaces& surfaces, Scene& scene, Material& material) {
   const bool has_vertex = has_key(section, "vertex");
   if (!has_key(section, "fragment")) {
-    if (!has_vertex && !has_key(section, "uniforms") && !has_key(section, "textures")) return;
+    if (!has_vertex && !has_key(section, "uniforms") && !has_key(section, "textures") &&
+        !has_key(section, "defines") && !has_key(section, "include")) {
+      return;
+    }
     fail_at(section, "fragment",
             "is missing; the file of a fragment shader would be right (docs/shaders.md)");
   }

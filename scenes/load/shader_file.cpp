@@ -28,12 +28,18 @@ std::map<std::string, std::string> read_defines(Section section) {
   if (section.table == nullptr) return defines;
   for (const auto& [key, node] : *section.table) {
     const std::string name{key.str()};
+    std::string& value = defines[name];
     if (const auto flag = node.value_exact<bool>()) {
-      defines[name] = *flag ? "1" : "0";
+      value = *flag ? "1" : "0";
     } else if (const auto number = node.value_exact<std::int64_t>()) {
-      defines[name] = std::to_string(*number);
+      value = std::to_string(*number);
+    } else if (const auto text = node.value_exact<std::string>()) {
+      value = *text;
     } else {
-      defines[name] = read_text(section, name, "");
+      fail_at(section, name, "is no text; a text, a whole number, true or false would be right");
+    }
+    if (const std::string fault = definition_fault(name, value); !fault.empty()) {
+      fail_at(section, name, fault);
     }
   }
   return defines;
@@ -44,7 +50,15 @@ std::map<std::string, std::string> read_defines(Section section) {
 ShaderReading read_shader_keys(Section& section, const std::filesystem::path& folder) {
   ShaderReading reading{.defines = read_defines(read_section(section, "defines"))};
   for (const std::string& from : read_texts(section, "include")) {
-    reading.include_folders.push_back((folder / from).string());
+    const std::filesystem::path path = folder / from;
+    std::error_code error;
+    if (!std::filesystem::is_directory(path, error)) {
+      fail_at(section, "include", "'" + from + "' is no folder");
+    }
+    reading.include_folders.push_back(path.string());
+  }
+  if (reading.include_folders.size() > kMostIncludeFolders) {
+    fail_at(section, "include", "has more than 64 folders; fewer would be right");
   }
   return reading;
 }

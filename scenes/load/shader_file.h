@@ -29,7 +29,7 @@ struct OpenedShader {
   std::vector<std::string> files{};  ///< that were read
 };
 
-/// What a file does not say itself.
+/// How to read a shader: what its file leaves open.
 struct ShaderReading {
   ShaderStage stage = ShaderStage::fragment;
   GlslConvention convention = GlslConvention::recognised;
@@ -39,8 +39,8 @@ struct ShaderReading {
 
 struct Section;
 
-/// The keys `defines` (of texts, whole numbers, or flags, as 1 or 0) and `include` of a pass or a
-/// material, whose file is in the folder.
+/// The keys `defines` (texts, whole numbers, or flags, as 1 or 0) and `include` of a pass or a
+/// material, whose file is in the folder. Throws SceneError.
 ShaderReading read_shader_keys(Section& section, const std::filesystem::path& folder);
 
 /// Throws SceneError for a file that cannot be read, ShaderError for one that is no shader.

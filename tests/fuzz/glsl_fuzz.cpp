@@ -1,4 +1,5 @@
-// Any text as GLSL: a ShaderError, or pixels. The first byte chooses the convention and the stage.
+// Any text as GLSL: a ShaderError, or pixels. The first byte chooses the convention, the stage, and
+// whether there are definitions.
 
 #include <string>
 
@@ -8,13 +9,15 @@
 
 int softfocus::fuzz_glsl(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
-  const GlslSource source{
-      .stage = data[0] / 6 % 8 == 7 ? ShaderStage::vertex : ShaderStage::fragment,
-      .name = "fuzz.glsl",
-      .text{reinterpret_cast<const char*>(data) + 1, size - 1},
-      .convention = static_cast<GlslConvention>(data[0] % 6)};
+  GlslSource source{.stage = data[0] / 6 % 8 == 7 ? ShaderStage::vertex : ShaderStage::fragment,
+                    .name = "fuzz.glsl",
+                    .text{reinterpret_cast<const char*>(data) + 1, size - 1},
+                    .convention = static_cast<GlslConvention>(data[0] % 6),
+                    .include_folders = {"b"}};
+  if (data[0] >= 192) source.defines = {{"A", "texture2D"}, {"B", "iTime"}, {"vUv", "A(t, uv)"}};
   const auto read = [](const std::string& path) {
-    return path == "a" ? std::optional<std::string>{"float included;\n"} : std::nullopt;
+    return path == "a" || path == "b/b" ? std::optional<std::string>{"float included;\n"}
+                                        : std::nullopt;
   };
   try {
     CompiledGlsl compiled = compile_glsl(source, read);

@@ -1,6 +1,7 @@
 #include "tools/effects/shader_on_picture.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <optional>
 #include <utility>
 
@@ -176,14 +177,25 @@ void add_shader_options(CLI::App& parser, ShaderOptions& options) {
              "Where the shaders come from (default: recognised by their text)", kGlslConventions,
              options.convention);
   add_repeatable_value(
-      parser, "--define", "NAME[=VALUE]", "A macro of the shaders, as #define has it (default: 1)",
+      parser, "--define", "NAME[=VALUE]", "A macro of the --shader files; without a value it is 1",
       [&options](const std::string& text) {
         const std::size_t end = std::min(text.find('='), text.size());
-        options.defines[text.substr(0, end)] = end < text.size() ? text.substr(end + 1) : "1";
+        const std::string name = text.substr(0, end);
+        std::string value = end < text.size() ? text.substr(end + 1) : "1";
+        if (const std::string fault = definition_fault(name, value); !fault.empty()) {
+          throw UsageError("--define '" + text + "': " + fault);
+        }
+        options.defines[name] = std::move(value);
       });
-  add_repeatable_value(
-      parser, "--include", "FOLDER", "Where #include looks for what is not beside the shader",
-      [&options](const std::string& text) { options.include_folders.push_back(text); });
+  add_repeatable_value(parser, "--include", "FOLDER",
+                       "Where #include of the --shader files looks for what is not beside them",
+                       [&options](const std::string& text) {
+                         std::error_code error;
+                         if (!std::filesystem::is_directory(text, error)) {
+                           throw UsageError("--include '" + text + "': there is no such folder");
+                         }
+                         options.include_folders.push_back(text);
+                       });
 }
 
 std::vector<std::string> shader_inputs(const ShaderOptions& options) {
@@ -197,6 +209,10 @@ std::vector<std::string> shader_inputs(const ShaderOptions& options) {
 
 Image with_shaders(const ShaderOptions& options, Image picture, const Profile& profile,
                    ThreadPool& pool) {
+  if (options.files.empty() && !(options.defines.empty() && options.include_folders.empty())) {
+    throw UsageError(
+        "--define and --include are of --shader; a pipeline's passes have `defines` and `include`");
+  }
   std::vector<ReadShader> all;
   for (const std::string& file : options.files) {
     OpenedShader opened =

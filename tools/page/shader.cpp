@@ -18,7 +18,8 @@ Json answer_shader(Page& /*page*/, const Json& request) {
       throw SceneError("'" + wanted + "' is not here; \"" + name + "\" would be right");
     }
     if (!reading.defines.empty() || !reading.include_folders.empty()) {
-      throw SceneError("on the page the shader's text has to have all: no `defines`, no `include`");
+      throw SceneError(
+          "the page has no `defines` and no `include`; they would belong into the text");
     }
     OpenedShader shader = compiled_shader(request.at("compiled"));
     if (reading.convention != GlslConvention::recognised &&

@@ -135,8 +135,7 @@ SOFTFOCUS_INLINE void copy_triangle(const TriangleColumns& columns, std::size_t 
   for (std::size_t i = 0; i < 4; ++i) {
     t.bounds[i] = static_cast<std::int16_t>(columns.bounds[i][lane]);
   }
-  t.x_origin = t.bounds[0];
-  t.y_origin = t.bounds[1];
+  t.origin = packed_pixel(t.bounds[0], t.bounds[1]);
   t.inverse_area = columns.inverse_area[lane];
   t.is_large = false;
   t.large = nullptr;

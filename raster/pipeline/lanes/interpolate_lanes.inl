@@ -50,7 +50,7 @@ struct BarycentricLanes {
   VaryingLanes<N> first, to_second, to_third, flat;
   std::array<Floats, 3> inverse_w{};
   std::array<Ints, 3> edge{}, slopes{};
-  Ints x_origin{}, y_origin{};
+  Ints origin{};
   Floats inverse_area{};
   const QuadTriangles* of_quads = nullptr;
   bool any_large = false;
@@ -85,23 +85,23 @@ struct BarycentricLanes {
     const Ints edges = as_ints(load_fours(numbers.data(), 0));
     const Ints packed = as_ints(load_fours(numbers.data(), 4));
     edge = {spread<0>(edges), spread<1>(edges), spread<2>(edges)};
-    x_origin = spread<3>(edges);
+    origin = spread<3>(edges);
     slopes = {spread<0>(packed), spread<1>(packed), spread<2>(packed)};
-    y_origin = spread<3>(packed);
-    inverse_area = spread<3>(load_fours(numbers.data(), 8));
+    inverse_area = as_floats(as_bits(spread<3>(packed)));
     of_quads = &triangles;
     for (const LaneTriangle* t : triangles) any_large = any_large || t->is_large;
     if (any_large) load_wide();
   }
 
-  SOFTFOCUS_INLINE Weights weights(Ints x, Ints y) const {
+  /// `pixels`: packed_pixel() of the target.
+  SOFTFOCUS_INLINE Weights weights(Ints pixels) const {
     std::array<Floats, 3> l;
-    const Ints steps = ((x - x_origin) & 0xFFFF) | (y - y_origin) << 16;
+    const Ints steps = subtract_pairs(pixels, origin);
 #pragma GCC unroll 3
     for (std::size_t i = 0; i < 3; ++i) {
       l[i] = to_floats(edge[i] + (multiply_add_pairs(steps, slopes[i]) << 8));
     }
-    if (any_large) weigh_large(x, y, l);
+    if (any_large) weigh_large(pixels & 0xFFFF, pixels >> 16, l);
 #pragma GCC unroll 3
     for (std::size_t i = 0; i < 3; ++i) l[i] *= inverse_area;
     const Floats p0 = l[0] * inverse_w[0];
@@ -138,8 +138,8 @@ struct BarycentricLanes {
   }
 
   SOFTFOCUS_INLINE void weigh_large(Ints x, Ints y, std::array<Floats, 3>& l) const {
-    const WideLanes dx = widen(x - x_origin);
-    const WideLanes dy = widen(y - y_origin);
+    const WideLanes dx = widen(x - (origin & 0xFFFF));
+    const WideLanes dy = widen(y - (origin >> 16));
 #pragma GCC unroll 3
     for (std::size_t i = 0; i < 3; ++i) {
       l[i] = narrow(wide[i].at_origin + (dx * wide[i].per_x + dy * wide[i].per_y));
@@ -259,9 +259,9 @@ struct PlaneLanes {
     }
   }
 
-  SOFTFOCUS_INLINE PlanePoint weights(Ints x, Ints y) const {
-    const Floats column = to_floats(x);
-    const Floats row = to_floats(y);
+  SOFTFOCUS_INLINE PlanePoint weights(Ints pixels) const {
+    const Floats column = to_floats(pixels & 0xFFFF);
+    const Floats row = to_floats(pixels >> 16);
     return {column, row, 1.0f / at(inverse_w, column, row)};
   }
 

@@ -81,17 +81,18 @@ LaneTriangle& add_set_up_triangle(LaneChunk& chunk, const TriangleSetup& setup,
                                   std::size_t provoking, const Profile& profile) {
   const auto& functions = std::get<EdgeFunctions>(setup.coverage);
   LaneTriangle t{};
-  t.x_origin = setup.bounds.x_begin;
-  t.y_origin = setup.bounds.y_begin;
+  t.origin = packed_pixel(setup.bounds.x_begin, setup.bounds.y_begin);
   if (!extends_to(functions, kSmallExtent)) {
-    t.large = &chunk.large.emplace_back(large_edges(functions, t.x_origin, t.y_origin));
+    t.large = &chunk.large.emplace_back(
+        large_edges(functions, setup.bounds.x_begin, setup.bounds.y_begin));
     t.is_large = true;
   }
   for (std::size_t i = 0; i < 3; ++i) {
     const EdgeFunction& edge = functions.edges[i];
     t.thresholds[i] = edge.owns_centres ? 0 : 1;
     if (t.large != nullptr) continue;
-    t.edge[i] = static_cast<std::int32_t>(edge_at(edge, t.x_origin, t.y_origin));
+    t.edge[i] =
+        static_cast<std::int32_t>(edge_at(edge, setup.bounds.x_begin, setup.bounds.y_begin));
     t.slopes[i] =
         packed_slopes(static_cast<std::int32_t>(edge.per_x), static_cast<std::int32_t>(edge.per_y));
   }

@@ -55,7 +55,7 @@ inline constexpr std::int32_t kSmallExtent = 88 * 256;
 /// The edge functions of a triangle that is not small.
 struct LargeEdges {
   EdgeFunctions exact;
-  /// In binary64, from the triangle's pixel (x_origin, y_origin). Exact up to kWideExtent.
+  /// In binary64, from the first pixel of the triangle's bounds. Exact up to kWideExtent.
   std::array<double, 3> edge, per_x, per_y;
   bool fits_doubles;
 };
@@ -64,19 +64,24 @@ struct LargeEdges {
 /// stay below 2 * 2^33 * (2^17 + 8) < 2^53.
 inline constexpr std::int64_t kWideExtent = 1 << 25;
 
+/// A pixel's x in the lower 16 bits, y in the upper.
+inline constexpr std::int32_t packed_pixel(int x, int y) {
+  return static_cast<std::int32_t>((static_cast<std::uint32_t>(x) & 0xFFFFu) |
+                                   static_cast<std::uint32_t>(y) << 16);
+}
+
 /// A triangle that is drawn, in two lines of a cache. The first has all that says where it is seen.
 struct alignas(64) LaneTriangle {
-  // Three times four numbers: kernels load four at once.
-  /// Edge functions of a small triangle, at the pixel (x_origin, y_origin).
+  // Twice four numbers, which kernels load at once.
+  /// Edge functions of a small triangle, at `origin`.
   std::array<std::int32_t, 3> edge;
-  std::int32_t x_origin;
+  std::int32_t origin;  ///< packed_pixel() of the bounds' first
   /// Of a small triangle: their differences from pixel to pixel, over 256, along x in the lower 16
   /// bits and along y in the upper. Those 16 bits hold kSmallExtent.
   std::array<std::int32_t, 3> slopes;
-  std::int32_t y_origin;
+  float inverse_area;
   /// Of vertex 0, then the others less it; or a plane's at_origin, per_x, per_y.
   std::array<float, 3> depth;
-  float inverse_area;
   std::array<std::int16_t, 4> bounds;     ///< x_begin, y_begin, x_end, y_end
   std::array<std::int8_t, 3> thresholds;  ///< covered where each E >= its threshold: 0 or 1
   bool clockwise;
@@ -86,8 +91,7 @@ struct alignas(64) LaneTriangle {
   const LargeEdges* large;  ///< null if it is small
 };
 static_assert(offsetof(LaneTriangle, edge) == 0 &&
-              offsetof(LaneTriangle, slopes) == 4 * sizeof(float) &&
-              offsetof(LaneTriangle, depth) == 8 * sizeof(float));
+              offsetof(LaneTriangle, slopes) == 4 * sizeof(float));
 
 inline constexpr std::int32_t packed_slopes(std::int32_t per_x, std::int32_t per_y) {
   return static_cast<std::int32_t>((static_cast<std::uint32_t>(per_x / 256) & 0xFFFFu) |

@@ -174,8 +174,8 @@ SOFTFOCUS_INLINE void rasterize_small(const LaneTriangle& t, const VisibilityTil
   // Parts of a block that lie before the bounds.
   range.x_begin = std::max<int>(t.bounds[0], tile.area.x_begin) & -kPartColumns;
   range.y_begin = std::max<int>(t.bounds[1], tile.area.y_begin) & -kPartRows;
-  const int dx = range.x_begin - t.x_origin;
-  const int dy = range.y_begin - t.y_origin;
+  const int dx = range.x_begin - t.bounds[0];
+  const int dy = range.y_begin - t.bounds[1];
   const Ints steps = ((lane_x() + dx) & 0xFFFF) | (lane_y() + dy) << 16;
   // Edge functions less their thresholds, over the first part of a block in a row; and steps to
   // the next part and row.
@@ -211,8 +211,8 @@ template <class Writer>
 SOFTFOCUS_INLINE void rasterize_wide(const LaneTriangle& t, const VisibilityTile& tile,
                                      Writer& writer) {
   const BlockRange range = blocks_of(t, tile);
-  const WideLanes x = widen(lane_x() + (range.x_begin - t.x_origin));
-  const WideLanes y = widen(lane_y() + (range.y_begin - t.y_origin));
+  const WideLanes x = widen(lane_x() + (range.x_begin - t.bounds[0]));
+  const WideLanes y = widen(lane_y() + (range.y_begin - t.bounds[1]));
   std::array<WideLanes, 3> row, per_part, per_row;
   std::array<Floats, 3> thresholds;
 #pragma GCC unroll 3

@@ -97,9 +97,10 @@ struct FragmentBatch {
 };
 
 // A quad that shows a triangle of a run, in 32 bits. From the top: the triangle's id less the
-// run's first; the quad's number; a bit for each pixel that shows the triangle.
-inline constexpr int kQuadBits = 10;
-static_assert(kTilePixels / kQuadPixels == 1 << kQuadBits);
+// run's first; the quad's row and its column; a bit for each pixel that shows the triangle.
+inline constexpr int kColumnBits = 5;
+inline constexpr int kQuadBits = 2 * kColumnBits;
+static_assert(kTileSize / 2 == 1 << kColumnBits);
 static_assert(kMostVisible >> (32 - kQuadBits - kQuadPixels) == 0);
 
 // Vertices are prefetched this many vectors ahead: a few hundred cycles.
@@ -160,17 +161,17 @@ SOFTFOCUS_INLINE std::uint32_t triangle_of(std::uint32_t entry) {
     const Ints own = splat(id);
     looks += (x_end - x_begin) * (y_end - y_begin);
     for (int y = y_begin; y < y_end; y += kPartRows) {
-      const std::size_t last = place_of_pixel((x_end - 1) & -kPartColumns, y);
-      for (std::size_t place = place_of_pixel(x_begin, y); place <= last;
-           place = next_part_place(place)) {
+      const auto row = static_cast<std::uint32_t>(y / 2) << kColumnBits;
+      std::size_t place = place_of_pixel(x_begin, y);
+      for (int x = x_begin; x < x_end; x += kPartColumns, place = next_part_place(place)) {
         unsigned pixels = equal_lane_bits(load(&layer.ids[place]), own);
         if (pixels == 0) continue;
         if (is_cut) pixels &= pixels_before(place, width, height);
-        const auto quad = triangle | static_cast<std::uint32_t>(place / kQuadPixels);
+        const auto quad = (triangle | row | static_cast<std::uint32_t>(x / 2)) << kQuadPixels;
 #pragma GCC unroll 4
         for (unsigned i = 0; i < kQuads; ++i) {
           const unsigned of_quad = pixels >> (i * kQuadPixels) & 0xFu;
-          *to = (quad + i) << kQuadPixels | of_quad;
+          *to = quad + (((i & 1) + (i >> 1 << kColumnBits)) << kQuadPixels) + of_quad;
           to += of_quad != 0 ? 1 : 0;
         }
       }
@@ -276,10 +277,13 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
   list_seen(tile, layer, run, seen);
   const LaneTriangle* const* triangles =
       &tile.triangles[static_cast<std::size_t>(run.first_id - 1)];
-  const auto stride = static_cast<std::int32_t>(layer.stride_bytes);
+  constexpr int kTexelBytes = sizeof(std::uint64_t);
+  const Ints per_place = splat(packed_pixel(1, static_cast<int>(layer.stride_bytes) / kTexelBytes));
   const std::byte* first = layer.texels;
   const bool in_picture = layer.stride_bytes > kTileSize * sizeof(std::uint64_t);
   const Ints own_pixel = splat(1) << (lane_numbers() & (kQuadPixels - 1));
+  const Ints own_place = (lane_numbers() & 1) | (lane_numbers() >> 1 & 1) << 16;
+  const Ints origin = splat(packed_pixel(tile.area.x_begin, tile.area.y_begin));
 
   FragmentBatch<Stage::kInputs> batch;
   Interpolator interpolator{};
@@ -301,17 +305,15 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
       interpolator.load(of_quads, load_job);
       loaded = is_one ? first_triangle : ~0u;
     }
-    const Ints quad = entry >> kQuadPixels;
-    const Ints block = quad >> 2;
-    static_assert(kTileBlocks == 16 && kBlockPixels / kQuadPixels == 4);
-    const Ints x = (block & 15) * kBlockSize + (quad & 1) * 2 + (lane_numbers() & 1);
-    const Ints y = (block >> 4 & 15) * kBlockSize + (quad & 2) + (lane_numbers() >> 1 & 1);
-
-    const QuadFragments<Interpolator> fragments{
-        interpolator, interpolator.weights(tile.area.x_begin + x, tile.area.y_begin + y), of_quads};
+    // As packed_pixel(), in the tile. A quad's column and row count two pixels.
+    constexpr int kInColumns = (1 << (kColumnBits + 1)) - 2;
+    constexpr int kToRows = 17 - kColumnBits - kQuadPixels;
+    const Ints places = (entry >> (kQuadPixels - 1) & kInColumns) +
+                        (entry << kToRows & kInColumns << 16) + own_place;
+    const QuadFragments<Interpolator> fragments{interpolator, interpolator.weights(places + origin),
+                                                of_quads};
     const std::int32_t* offsets = &batch.offsets[static_cast<std::size_t>(batch.count)];
-    batch.append(stage, fragments,
-                 y * stride + x * static_cast<std::int32_t>(sizeof(std::uint64_t)),
+    batch.append(stage, fragments, multiply_add_pairs(places, per_place) * kTexelBytes,
                  (entry & own_pixel) != 0);
     // The second step writes there. A tile apart from the picture is in the cache anyway.
     for (int lane = 0; in_picture && lane < kLanes; lane += lane % 8 == 0 ? 2 : 6) {
@@ -332,7 +334,7 @@ unsigned keep_of_part(const Stage& stage, const FragmentJob& job, const LaneTria
   Interpolator interpolator{};
   interpolator.load(of_quads, load_job_of(stage, job));
   const QuadFragments<Interpolator> fragments{
-      interpolator, interpolator.weights(x + lane_x(), y + lane_y()), of_quads};
+      interpolator, interpolator.weights((x + lane_x()) | (y + lane_y()) << 16), of_quads};
   return lane_bits(stage.keeps(fragments)) & pixels;
 }
 

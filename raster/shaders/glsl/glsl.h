@@ -50,8 +50,8 @@ struct GlslSource {
   std::map<std::string, std::string> samplers{};
 };
 
-/// Reads a file that a shader includes, named relative to where `GlslSource::name` is relative to;
-/// nothing if it cannot be read, or must not.
+/// Reads a file that a shader includes: a path from the folder of the file that includes it, or
+/// from an include folder. Nothing if it cannot be read, or must not.
 using GlslReader = std::function<std::optional<std::string>(const std::string& path)>;
 
 /// A value that a text offers to its user: gl-transitions' `uniform float a; // = 1.0`, libretro's
@@ -73,6 +73,11 @@ struct CompiledGlsl {
   std::vector<GlslParameter> parameters{};
   std::vector<std::string> warnings{};  ///< "FILE:LINE: ..."
 };
+
+/// Why `#define NAME VALUE` cannot stand before a shader; empty if it can.
+std::string definition_fault(std::string_view name, std::string_view value);
+
+inline constexpr std::size_t kMostIncludeFolders = 64;
 
 /// What a text may have at the most, with all that it includes.
 inline constexpr std::size_t kMostGlslBytes = std::size_t{1} << 20;

@@ -371,8 +371,10 @@ GlslSurroundings glsl_surroundings(GlslConvention convention, const GlslSource& 
   if (convention == GlslConvention::gl_transitions) around = transition(source, tokens, version);
   if (convention == GlslConvention::three) around = three_surroundings(source, tokens, version);
   if (convention == GlslConvention::libretro) {
-    around.before = source.stage == ShaderStage::vertex ? "#define VERTEX\n" : "#define FRAGMENT\n";
-    around.before += "#define PARAMETER_UNIFORM\n";
+    for (const char* const name :
+         {source.stage == ShaderStage::vertex ? "VERTEX" : "FRAGMENT", "PARAMETER_UNIFORM"}) {
+      if (!source.defines.contains(name)) around.before.append("#define ").append(name) += '\n';
+    }
     if (!version.is_es && version.number < 420) {
       around.before = "#extension GL_ARB_shading_language_420pack : enable\n" + around.before;
     }

@@ -82,8 +82,9 @@ std::string without_comments(std::string text) {
   return text;
 }
 
-/// Joins lines that end in a backslash, and makes up for their number behind them. Not in comments:
-/// one to the end of a line goes on in none, and glslang refuses a backslash there.
+/// Joins lines that end in a backslash, and makes up for their number behind them. In these
+/// versions a comment to the end of a line ends there, and glslang refuses the backslash: it
+/// becomes a blank.
 std::string spliced(const std::string& text) {
   if (text.find("\\\n") == std::string::npos) return text;
   const std::string bare = without_comments(text);
@@ -185,6 +186,7 @@ class Includes {
   std::string included(std::string_view header, const std::string& includer, int line) {
     const bool is_quoted = header.size() > 2 && header.front() == '"' && header.back() == '"';
     const bool is_angled = header.size() > 2 && header.front() == '<' && header.back() == '>';
+    // OpenGL's own #include has no such form, but programs that include by themselves take it.
     const bool is_bare = header.find_first_of("\"<> \t") == header.npos && !header.empty();
     const auto error = [&](const std::string& why) {
       missing.push_back(why);
@@ -205,10 +207,12 @@ class Includes {
     if (chain_.size() >= kMostIncludeDepth || ++count_ > kMostIncludes) {
       return error("#include " + wanted + ": too many files include others");
     }
-    const std::string beside = path_in(std::filesystem::path(includer).parent_path(), wanted);
-    std::vector<std::string> paths{beside};
-    for (const std::string& folder : folders_) paths.push_back(path_in(folder, wanted));
-    for (const std::string& path : paths) {
+    std::string tried;
+    for (std::size_t i = 0; i <= folders_.size(); ++i) {
+      std::filesystem::path folder = std::filesystem::path(includer).parent_path();
+      if (i > 0) folder = folders_[i - 1];
+      const std::string path = (folder / wanted).lexically_normal().generic_string();
+      tried += (i == 0 ? "" : i < folders_.size() ? ", " : " or ") + path;
       if (std::find(chain_.begin(), chain_.end(), path) != chain_.end()) {
         return error("#include " + wanted + ": the file includes itself");
       }
@@ -217,13 +221,8 @@ class Includes {
       if (std::find(files_.begin(), files_.end(), path) == files_.end()) files_.push_back(path);
       return line_directive(1, path) + expanded(cleaned(*text, path), path);
     }
-    return error("#include " + wanted + ": cannot read " + beside +
-                 (folders_.empty() ? "" : ", nor is it in the folders to look in") +
+    return error("#include " + wanted + ": cannot read " + tried +
                  (is_angled ? ", and it is none of three.js' that are known here" : ""));
-  }
-
-  static std::string path_in(const std::filesystem::path& folder, const std::string& wanted) {
-    return (folder / wanted).lexically_normal().generic_string();
   }
 
   const GlslReader& read_;
@@ -394,6 +393,9 @@ GlslToken refused_extension(std::span<const GlslToken> tokens) {
 /// SPIR-V of them in the compatibility profile alone.
 bool wants_compatibility(std::span<const GlslToken> tokens, const GlslVersion& version) {
   if (version.is_es || version.number < 150 || version.number >= 420) return false;
+  for (std::size_t i = 1; i < tokens.size(); ++i) {
+    if (tokens[i - 1].text == "#" && tokens[i].text == "#") return true;  // may make such a name
+  }
   return std::any_of(tokens.begin(), tokens.end(), [](const GlslToken& token) {
     return std::any_of(std::begin(kOldTextureNames), std::end(kOldTextureNames),
                        [&](std::string_view begin) { return token.text.starts_with(begin); });
@@ -505,11 +507,8 @@ namespace {
 std::string definitions(const GlslSource& source) {
   std::string made;
   for (const auto& [name, value] : source.defines) {
-    const bool is_name = !name.empty() && std::all_of(name.begin(), name.end(), is_word) &&
-                         std::isdigit(static_cast<unsigned char>(name.front())) == 0;
-    if (!is_name || value.find_first_of("\n\r\\") != std::string::npos) {
-      throw ShaderError(source.name + ": the definition '" + name +
-                        "' has to be a name, and its value a line without a backslash");
+    if (const std::string fault = definition_fault(name, value); !fault.empty()) {
+      throw ShaderError(source.name + ": the definition '" + name + "': " + fault);
     }
     made.append("#define ").append(name).append(" ").append(value).append("\n");
   }
@@ -522,8 +521,8 @@ GlslText hlsl_text(const GlslSource& source, const GlslReader& read) {
   const std::string text =
       spliced(includes.expanded(cleaned(source.text, source.name), source.name));
   out.missing_includes = std::move(includes.missing);
-  out.before = definitions(source) + hlsl_surroundings(glsl_tokens(text));
-  const std::string whole = line_directive(1, source.name) + text;
+  const std::string whole = definitions(source) + line_directive(1, source.name) + text;
+  out.before = hlsl_surroundings(glsl_tokens(whole));
   check_limits(out.before + whole, source.name);
   out.text = with_lines(whole, true);
   return out;
@@ -531,15 +530,32 @@ GlslText hlsl_text(const GlslSource& source, const GlslReader& read) {
 
 }  // namespace
 
+std::string definition_fault(std::string_view name, std::string_view value) {
+  const bool is_name = !name.empty() && std::all_of(name.begin(), name.end(), is_word) &&
+                       std::isdigit(static_cast<unsigned char>(name.front())) == 0;
+  if (!is_name) return "the name has to be of letters, digits and _, and begin with no digit";
+  const bool is_line = std::all_of(value.begin(), value.end(), [](char c) {
+    return c == '\t' || (static_cast<unsigned char>(c) >= ' ' && c != '\\');
+  });
+  if (!is_line || value.find("//") != value.npos || value.find("/*") != value.npos ||
+      std::count(value.begin(), value.end(), '"') % 2 != 0) {
+    return "the value has to be a line without a backslash, a comment and half a string";
+  }
+  return {};
+}
+
 GlslText glsl_text(const GlslSource& source, const GlslReader& read, bool raise, int least) {
   if (is_hlsl(source)) return hlsl_text(source, read);
   GlslText out;
   std::string text = cleaned(source.text, source.name);
   Includes includes(read, source.include_folders, out.files);
   text = includes.expanded(text, source.name);
+  const std::string defined = definitions(source);
   {
-    const std::vector<GlslToken> tokens = glsl_tokens(text);
-    out.taken_as = said_version(tokens, source.name);
+    const std::vector<GlslToken> of_text = glsl_tokens(text);
+    std::vector<GlslToken> tokens = glsl_tokens(defined);
+    tokens.insert(tokens.end(), of_text.begin(), of_text.end());
+    out.taken_as = said_version(of_text, source.name);
     out.said_version = out.taken_as.number != 0;
     out.convention = source.convention != GlslConvention::recognised
                          ? source.convention
@@ -548,6 +564,7 @@ GlslText glsl_text(const GlslSource& source, const GlslReader& read, bool raise,
       out.convention = GlslConvention::three;
     }
     if (!out.said_version) out.taken_as = version_of(out.convention, tokens);
+    if (wants_compatibility(tokens, out.taken_as)) out.taken_as.profile = "compatibility";
     if (const auto refused = refused_extension(tokens); !refused.text.empty()) {
       throw ShaderError(at(source.name, refused.line) + std::string(refused.text) +
                         " is not supported; a sampler is a uniform");
@@ -558,13 +575,12 @@ GlslText glsl_text(const GlslSource& source, const GlslReader& read, bool raise,
     out.is_raised = raised.number > out.taken_as.number;
     if (out.said_version) {
       // In front of everything, where it belongs and comments often stand.
-      const int line = tokens[0].line;
+      const int line = of_text[0].line;
       if (!out.taken_as.is_es) out.version.append(static_cast<std::size_t>(line - 1), '\n');
       std::size_t from = 0, begin = 0;
       for (int i = 1; i < line; ++i) next_line(text, from);
-      begin = static_cast<std::size_t>(tokens[0].text.data() - text.data());
+      begin = static_cast<std::size_t>(of_text[0].text.data() - text.data());
       if (wants_compatibility(tokens, out.taken_as)) {
-        out.taken_as.profile = "compatibility";
         out.version += "#version " + std::to_string(out.taken_as.number) + " compatibility\n";
       } else {
         out.version += text.substr(begin, text.find('\n', begin) - begin) + "\n";
@@ -596,12 +612,12 @@ GlslText glsl_text(const GlslSource& source, const GlslReader& read, bool raise,
     }
   }
   if (version.is_es ? version.number < 300 : version.number < 420) text = spliced(text);
-  text = with_known_layouts(text);
+  // As if they stood in the text: what is recognised and put around it heeds them.
+  text = defined + line_directive(1, source.name) + with_known_layouts(text);
   const std::vector<GlslToken> tokens = glsl_tokens(text);
   out.is_vulkan = is_vulkan(tokens);
 
   out.before = "#extension GL_GOOGLE_include_directive : enable\n";  // and with it #line 1 "FILE"
-  out.before += definitions(source);
   if (version.has_blocks() && !out.is_vulkan) {
     out.before += "layout(std140) uniform;\n";
   } else if (uses(tokens, "GL_ARB_uniform_buffer_object")) {
@@ -615,10 +631,9 @@ GlslText glsl_text(const GlslSource& source, const GlslReader& read, bool raise,
     const auto lines = std::count(source.text.begin(), source.text.end(), '\n');
     out.after = line_directive(static_cast<int>(lines) + 1, source.name);
   }
-  check_limits(spliced(out.before + line_directive(1, source.name) + text + out.after),
-               source.name);
+  check_limits(spliced(out.before + text + out.after), source.name);
   const bool sets_next = version.is_es || version.number >= 330;
-  out.text = with_lines(line_directive(1, source.name) + text, sets_next);
+  out.text = with_lines(text, sets_next);
   out.after = with_lines(out.after, sets_next);
   return out;
 }

@@ -358,6 +358,34 @@ TEST_CASE("levels of detail found in lanes have the bits of those found one by o
   }
 }
 
+TEST_CASE("a quad's level of detail is that of its upper row and left column") {
+  Random random{51};
+  for (const Size size : kSizes) {
+    const Texture texture = mipmapped(Format::r8, size, 52);
+    std::vector<glm::vec2> places(kPoints);
+    for (glm::vec2& place : places) {
+      for (float* value : {&place.x, &place.y}) {
+        *value = random.whole(0, 5) > 0 ? random.between(-0.2f, 0.2f) : extreme_value(random);
+      }
+    }
+    for (const NamedProfile& known : tested_profiles()) {
+      const DecodedTexture decoded = decode_texture(texture, known.profile);
+      for (const Isa isa : vector_isas()) {
+        std::vector<float> lods(places.size());
+        SOFTFOCUS_KERNEL(isa, find_levels_of_quads)(decoded, known.profile, places, lods);
+        int wrong = 0;
+        for (std::size_t i = 0; i < lods.size(); ++i) {
+          const glm::vec2* quad = &places[i / 4 * 4];
+          const float expected =
+              level_of_detail(texture, quad[1] - quad[0], quad[2] - quad[0], known.profile);
+          wrong += !same(lods[i], expected);
+        }
+        CHECK_MESSAGE(wrong == 0, known.name, " ", isa_name(isa));
+      }
+    }
+  }
+}
+
 #else  // once a vector unit
 
 #include "raster/images/sample_lanes.inl"
@@ -401,6 +429,18 @@ inline void find_levels(const DecodedTexture& texture, std::span<const Footprint
       dv_dy[i] = footprint.uv_per_y.y;
     }
     store(&lods[start], level_of_detail_lanes(texture, du_dx, dv_dx, du_dy, dv_dy));
+  }
+}
+
+inline void find_levels_of_quads(const DecodedTexture& texture, const Profile& profile,
+                                 std::span<const glm::vec2> places, std::span<float> lods) {
+  for (std::size_t start = 0; start < places.size(); start += kLanes) {
+    Floats u, v;
+    for (int i = 0; i < kLanes; ++i) {
+      u[i] = places[start + static_cast<std::size_t>(i)].x;
+      v[i] = places[start + static_cast<std::size_t>(i)].y;
+    }
+    store(&lods[start], level_of_detail_of_quads(texture, profile, u, v));
   }
 }
 

@@ -270,7 +270,7 @@ TEST_CASE("an include is read beside the file that includes it, and errors name 
   }
 }
 
-TEST_CASE("an include may lie in other folders, which are looked in in their order") {
+TEST_CASE("an include is looked for beside its includer, and then in folders in their order") {
   if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
   GlslSource source;
   source.name = "shaders/mine.frag";
@@ -278,11 +278,13 @@ TEST_CASE("an include may lie in other folders, which are looked in in their ord
   const TextFiles files{{"shaders/a", "#define A 1.0\n"},
                         {"one/a", "#error\n"},
                         {"one/b", "#include c\n"},
+                        {"one/d", "#error\n"},
                         {"two/b", "#error\n"},
-                        {"two/c", "#define C 2.0\n"}};
+                        {"two/c", "#include \"d\"\n"},
+                        {"two/d", "#define C 2.0\n"}};
   source.text = "#include \"a\"\n#include <b>\nvoid main() { gl_FragColor = vec4(A + C); }\n";
   CHECK(compiled_with(source, files).files ==
-        std::vector<std::string>{"shaders/a", "one/b", "two/c"});
+        std::vector<std::string>{"shaders/a", "one/b", "two/c", "two/d"});
 }
 
 TEST_CASE("an include that cannot be is an error where the preprocessor comes to it") {
@@ -302,8 +304,7 @@ TEST_CASE("an include that cannot be is an error where the preprocessor comes to
   CHECK(error_with(source, {{"a", "#ifndef A\n#define A\n#include \"a\"\n#endif\n"}}) ==
         "a:3: #include a: the file includes itself");
   source.include_folders = {"lib"};
-  CHECK(error_with(source) ==
-        "mine.frag:1: #include a: cannot read a, nor is it in the folders to look in");
+  CHECK(error_with(source) == "mine.frag:1: #include a: cannot read a or lib/a");
   TextFiles many;
   for (int i = 0; i < 40; ++i) {
     many[std::string("a") + std::string(static_cast<std::size_t>(i), 'a')] =
@@ -445,12 +446,60 @@ TEST_CASE("definitions reach the text, and nothing but definitions") {
   source.text = "void main() { gl_FragColor = vec4(SIZE); }\n";
   source.defines["SIZE"] = "2.0";
   CHECK(error_with(source) == "none");
-  source.defines["SIZE"] = "2.0\n#error";
-  CHECK(error_with(source) ==
-        "mine.frag: the definition 'SIZE' has to be a name, and its value a line without a "
-        "backslash");
-  source.defines = {{"1x", ""}};
-  CHECK(error_with(source).starts_with("mine.frag: the definition '1x' has to be a name"));
+  using namespace std::string_literals;
+  for (const std::string& value :
+       {"2.0\n#error"s, "/*"s, "1 // x"s, "\""s, "a\\"s, std::string(1, '\0')}) {
+    source.defines["SIZE"] = value;
+    CHECK(error_with(source) ==
+          "mine.frag: the definition 'SIZE': the value has to be a line without a backslash, a "
+          "comment and half a string");
+  }
+  for (const char* const name : {"1x", "", "A(x)", "a b"}) {
+    source.defines = {{name, ""}};
+    CHECK(error_with(source).find(
+              "': the name has to be of letters, digits and _, and begin with no digit") !=
+          std::string::npos);
+  }
+}
+
+TEST_CASE("what is recognised and put around a text heeds its definitions") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const auto error_of = [](const std::string& text, const std::string& name,
+                           const std::string& value) {
+    GlslSource source;
+    source.text = text;
+    source.defines = {{name, value}};
+    return error_with(source);
+  };
+  CHECK(error_of("void mainImage(out vec4 c, in vec2 p) { c = vec4(T); }\n", "T", "iTime") ==
+        "none");
+  CHECK(error_of("void mainImage(out vec4 c, in vec2 p) { c = vec4(iTime); }\n", "iTime", "1.0") ==
+        "none");
+  CHECK(error_of("#if defined(VERTEX)\n#elif defined(FRAGMENT)\nvoid main() {}\n#endif\n",
+                 "PARAMETER_UNIFORM", "1") == "none");
+  // Drivers see definitions before conditions and extensions of the text.
+  GlslSource source;
+  source.text =
+      "#ifndef TAPS\n#define TAPS 5\n#endif\n#extension GL_ARB_gpu_shader5 : enable\n"
+      "void main() { gl_FragColor = vec4(TAPS); }\n";
+  source.defines = {{"TAPS", "9"}};
+  const std::string text = compiled_with(source).text;
+  CHECK(text.find("#define TAPS 9") < text.find("#ifndef TAPS"));
+}
+
+TEST_CASE("texture2D() in a core profile, whatever names it") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  using namespace std::string_literals;
+  const std::string head = "uniform sampler2D t;\nin vec2 uv;\nout vec4 c;\n";
+  for (const std::string& version : {""s, "#version 330\n"s, "#version 400\n"s}) {
+    CHECK(error_of_text(version + head + "void main() { c = texture2D(t, uv); }\n") == "none");
+    CHECK(error_of_text(version + head + "#define CAT(a, b) a##b\n" +
+                        "void main() { c = CAT(texture, 2D)(t, uv); }\n") == "none");
+    GlslSource source;
+    source.text = version + head + "void main() { c = READ(t, uv); }\n";
+    source.defines = {{"READ", "texture2D"}};
+    CHECK(error_with(source) == "none");
+  }
 }
 
 TEST_CASE("texts that would take a compiler's stack or memory are refused in a line") {

@@ -86,8 +86,14 @@ TEST_CASE("apply --shader: macros by --define") {
       "mine.frag", "#ifdef RED\nvoid main() { gl_FragColor = vec4(RED, 0, 0, 1); }\n#endif\n");
   CHECK(all.applied(shader, {"--define", "RED"}) == all.applied(shader, {"--define", "RED=1"}));
   CHECK(all.applied(shader, {"--define", "RED"}) != all.applied(shader, {"--define", "RED=2"}));
-  check_refused(all.directory, all.apply(shader, "none.npy", {"--define", "=2"}), 1,
-                {"mine.frag: the definition '' has to be a name"});
+  check_refused(all.directory, all.apply(shader, "none.npy", {"--define", "=2"}), 2,
+                {"--define '=2': the name has to be"});
+  check_refused(all.directory, all.apply(shader, "none.npy", {"--include", "nowhere"}), 2,
+                {"--include 'nowhere': there is no such folder"});
+  check_refused(all.directory,
+                {"apply", all.picture, "--effect", "bloom", "--define", "RED", "-o",
+                 all.directory.file("none.npy")},
+                2, {"--define and --include are of --shader"});
 }
 
 TEST_CASE("apply --shader: the same bits on every unit, and by threads") {
