@@ -23,7 +23,7 @@ std::optional<std::string> read_include(const std::string& path) {
   return read_file_bytes(path, kMostGlslBytes);
 }
 
-std::map<std::string, std::string> read_defines(Section section) {
+std::map<std::string, std::string> read_defines(const Section& section) {
   std::map<std::string, std::string> defines;
   if (section.table == nullptr) return defines;
   for (const auto& [key, node] : *section.table) {
