@@ -502,6 +502,44 @@ TEST_CASE("texture2D() in a core profile, whatever names it") {
   }
 }
 
+TEST_CASE("a version's functions are compiled or refused, whatever version has them") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  struct Call {
+    const char* sampler;
+    const char* call;
+  };
+  constexpr Call kCalls[] = {{"sampler1D", "texture1DLod(t, 0.5, 0.0)"},
+                             {"sampler2D", "texture2DProj(t, vec3(1.0))"},
+                             {"sampler2D", "texture2DLodEXT(t, vec2(0.5), 0.0)"},
+                             {"sampler2D", "texture2DGradARB(t, vec2(0.5), vec2(0.0), vec2(0.0))"},
+                             {"sampler2D", "texelFetch2D(t, ivec2(0), 0)"},
+                             {"sampler2D", "textureQueryLOD(t, vec2(0.5))"},
+                             {"sampler2DRect", "texture2DRectProj(t, vec3(1.0))"},
+                             {"sampler2DArray", "texture2DArrayLod(t, vec3(0.5), 0.0)"},
+                             {"sampler2DShadow", "shadow2DLod(t, vec3(0.5), 0.0)"},
+                             {"sampler3D", "texture3DProj(t, vec4(0.5))"},
+                             {"samplerCube", "textureCubeLod(t, vec3(0.5), 0.0)"},
+                             {"sampler2D", "noise1(0.5)"},
+                             {"sampler2D", "ftransform()"},
+                             {"sampler2D", "min3(1.0, 2.0, 3.0)"},
+                             {"sampler2D", "gl_Fog.density"},
+                             {"sampler2D", "gl_LastFragData[0]"},
+                             {"sampler2D", "interpolateAtCentroid(uv)"}};
+  for (const char* const version :
+       {"", "#version 110\n", "#version 130\n", "#version 140\n", "#version 150\n",
+        "#version 330\n", "#version 400\n", "#version 420\n", "#version 460\n",
+        "#version 300 es\nprecision highp float;\n", "#version 450 compatibility\n",
+        "#version 330\n#extension GL_EXT_gpu_shader4 : enable\n"}) {
+    for (const Call& of : kCalls) {
+      const std::string error = error_of_text(
+          std::string(version) + "uniform " + of.sampler +
+          " t;\nin vec2 uv;\nout vec4 c;\nvoid main() { c = vec4(" + of.call + "); }\n");
+      CAPTURE(error);
+      CHECK((error == "none" || error.starts_with("mine.frag:")));
+    }
+  }
+}
+
 TEST_CASE("texts that would take a compiler's stack or memory are refused in a line") {
   if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
   std::string sum = "uniform float x;\nvoid main() {\n  gl_FragColor = vec4(x";
