@@ -84,7 +84,8 @@ std::vector<std::string> lens_doubts(const std::vector<NamedNotes>& pictures) {
     if (!found.notes || !found.notes->lens) continue;
     if (first == nullptr) first = &picture;
     const NotedLens& lens = *first->found.notes->lens;
-    if (*found.notes->lens == lens) continue;
+    // What differs past the digits that are told changes no pixel.
+    if (lens_text(*found.notes->lens) == lens_text(lens)) continue;
     doubts.push_back("the pictures have different lenses: '" + first->name + "' " +
                      lens_text(lens) + "; '" + picture.name + "' " + lens_text(*found.notes->lens));
   }

@@ -24,10 +24,6 @@ struct NotedLens {
   double fov_y_degrees = 40.0;
 };
 
-inline bool operator==(const NotedLens& a, const NotedLens& b) {
-  return a.lens == b.lens && a.coc_scale == b.coc_scale && a.fov_y_degrees == b.fov_y_degrees;
-}
-
 /// Adds the lens's numbers to an object, by the keys of scene files.
 void add_lens(Json& json, const ThinLens& lens, double coc_scale);
 

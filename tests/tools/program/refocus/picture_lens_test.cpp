@@ -129,6 +129,13 @@ TEST_CASE("compare: two lenses, and a sidecar of another picture, are told") {
   CHECK(contains(run.out, "\nnote                the pictures have different lenses: "));
   CHECK(compared({a, b})["notes"].size() == 1);
   CHECK_FALSE(compared({a, a}).contains("notes"));
+  const std::string near = directory.file("near.png");
+  CHECK(run_program({"render", "figures", "--size", "64x48", "--focus", "2.0000001", "-o", near})
+            .status == 0);
+  const std::string at = directory.file("at.png");
+  CHECK(run_program({"render", "figures", "--size", "64x48", "--focus", "2", "-o", at}).status ==
+        0);
+  CHECK_FALSE(compared({near, at}).contains("notes"));
   const std::string c = render_into(directory, "c.npy", "figures");
   const std::string d = render_into(directory, "d.npy", "cube-room");
   std::filesystem::copy_file(c + ".json", d + ".json",
