@@ -225,7 +225,7 @@ SOFTFOCUS_INLINE bool is_planned_quickly(const DecodedTexture& texture, const Sa
          texture.u.are_powers_of_two && texture.v.are_powers_of_two;
 }
 
-/// Below this magnitude a coordinate is taken as it is, and so are its texels at all levels.
+/// Coordinates below this magnitude are finite, and standard_texels() clamps them at no level.
 SOFTFOCUS_INLINE float most_usual(const DecodedTexture& texture) {
   return 0x1p22f / std::max(texture.u.sizes[0], texture.v.sizes[0]);
 }
@@ -457,14 +457,14 @@ template <LaneArithmetic arithmetic, TextureShape shape>
   for (int i = 0; i < count; ++i) {
     const LevelLanes levels =
         choose_levels<arithmetic>(load(points.lod + i * kLanes), last, trilinear);
-    if (is_quick) {
+    if constexpr (shape == TextureShape::flat) {
       const PlaceLanes as_it_is{.texture = texture,
                                 .sampler = sampler,
                                 .u = load(points.u + i * kLanes),
                                 .v = load(points.v + i * kLanes),
                                 .w = splat(0.0f),
                                 .slice = splat(0)};
-      if (all((absolute(as_it_is.u) < usual) & (absolute(as_it_is.v) < usual)) &&
+      if (is_quick && all((absolute(as_it_is.u) < usual) & (absolute(as_it_is.v) < usual)) &&
           plan_repeating<arithmetic>(as_it_is, levels, plans[static_cast<std::size_t>(i)])) {
         continue;
       }

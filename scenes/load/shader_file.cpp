@@ -12,6 +12,7 @@ namespace softfocus {
 namespace {
 
 constexpr std::size_t kMostShaderBytes = std::size_t{1} << 24;
+constexpr std::size_t kMostIncludeFolders = 64;
 
 bool is_spirv(const std::string& bytes) {
   return bytes.starts_with("\x03\x02\x23\x07") || bytes.starts_with("\x07\x23\x02\x03");

@@ -135,11 +135,14 @@ TEST_CASE("alpha is the depth, and a discarded pixel shows what is behind") {
   if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
   const Files files;
   files.write("red.frag",
-              "#version 330\nin vec2 vUv;\nout vec4 c;\nuniform float amount;\nvoid main() {\n"
+              "#version 330\n#include \"least.glsl\"\nin vec2 vUv;\nout vec4 c;\n"
+              "uniform float amount;\nvoid main() {\n"
               "  if (gl_FragCoord.y < LEAST) discard;\n  c = vec4(amount, 0, 0, 0.25);\n}\n");
+  std::filesystem::create_directory(files.folder.file("lib"));
+  files.write("lib/least.glsl", "#define LEAST float(TENS) * 10.0\n");
   const Scene scene = files.read(
       "background = [0, 0, 1]\n[camera]\nposition = [0, 0, 3]\nfar_m = 50\n[material.m]\n"
-      "fragment = \"red.frag\"\ndefines = { LEAST = \"50.0\" }\n"
+      "fragment = \"red.frag\"\ndefines = { TENS = 5 }\ninclude = [\"lib\"]\n"
       "[material.m.uniforms]\namount = 0.5\n[[object]]\n"
       "material = \"m\"\nshape = \"cube\"\nsize = 3\nposition = [0, 0, -1.5]\n");
   ThreadPool pool{1};

@@ -84,7 +84,7 @@ std::vector<std::string> lens_doubts(const std::vector<NamedNotes>& pictures) {
     if (!found.notes || !found.notes->lens) continue;
     if (first == nullptr) first = &picture;
     const NotedLens& lens = *first->found.notes->lens;
-    // What differs past the digits that are told changes no pixel.
+    // Of lenses that differ past the digits that are told, the note would show the same text twice.
     if (lens_text(*found.notes->lens) == lens_text(lens)) continue;
     doubts.push_back("the pictures have different lenses: '" + first->name + "' " +
                      lens_text(lens) + "; '" + picture.name + "' " + lens_text(*found.notes->lens));

@@ -77,8 +77,6 @@ struct CompiledGlsl {
 /// Why `#define NAME VALUE` cannot stand before a shader; empty if it can.
 std::string definition_fault(std::string_view name, std::string_view value);
 
-inline constexpr std::size_t kMostIncludeFolders = 64;
-
 /// What a text may have at the most, with all that it includes.
 inline constexpr std::size_t kMostGlslBytes = std::size_t{1} << 20;
 

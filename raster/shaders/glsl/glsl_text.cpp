@@ -82,17 +82,17 @@ std::string without_comments(std::string text) {
   return text;
 }
 
-/// Joins lines that end in a backslash, and makes up for their number behind them. In these
-/// versions a comment to the end of a line ends there, and glslang refuses the backslash: it
-/// becomes a blank.
-std::string spliced(const std::string& text) {
+/// Joins lines that end in a backslash, and makes up for their number behind them. Before GLSL 4.20
+/// and ES 3.00 a comment to the end of a line does not go on, and glslang refuses the backslash:
+/// it becomes a blank.
+std::string spliced(const std::string& text, bool comments_go_on = false) {
   if (text.find("\\\n") == std::string::npos) return text;
   const std::string bare = without_comments(text);
   std::string out;
   std::size_t owed = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const bool ends_line = text[i] == '\\' && i + 1 < text.size() && text[i + 1] == '\n';
-    if (ends_line && bare[i] == '\\') {
+    if (ends_line && (comments_go_on || bare[i] == '\\')) {
       ++owed;
       ++i;
       continue;
@@ -519,7 +519,7 @@ GlslText hlsl_text(const GlslSource& source, const GlslReader& read) {
   GlslText out{.convention = GlslConvention::plain, .said_version = true, .is_hlsl = true};
   Includes includes(read, source.include_folders, out.files);
   const std::string text =
-      spliced(includes.expanded(cleaned(source.text, source.name), source.name));
+      spliced(includes.expanded(cleaned(source.text, source.name), source.name), true);
   out.missing_includes = std::move(includes.missing);
   const std::string whole = definitions(source) + line_directive(1, source.name) + text;
   out.before = hlsl_surroundings(glsl_tokens(whole));

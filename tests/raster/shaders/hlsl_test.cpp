@@ -154,6 +154,24 @@ TEST_CASE("HLSL is recognised by its semantics, whatever its file's name") {
   CHECK_THROWS_AS(shader_of("mine.frag", "#version 330\n" + text), ShaderError);
 }
 
+TEST_CASE("HLSL has its definitions, and comments that go on") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const auto error_with = [](const std::string& text, const std::string& value) {
+    try {
+      compile_glsl({.name = "mine.hlsl", .text = text, .defines = {{"RED", value}}},
+                   [](const std::string&) { return std::nullopt; });
+    } catch (const ShaderError& error) {
+      return std::string{error.what()};
+    }
+    return std::string{"none"};
+  };
+  const std::string text =
+      "float4 main() : SV_Target {\n  // goes on \\\n  is no code\n  return float4(RED, 0, 0, "
+      "1);\n}\n";
+  CHECK(error_with(text, "1.0") == "none");
+  CHECK(error_with(text, "none").starts_with("mine.hlsl:4: 'none'"));
+}
+
 TEST_CASE("an error of HLSL names its line, and what glslang's stack cannot hold is refused") {
   if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
   CHECK(

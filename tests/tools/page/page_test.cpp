@@ -436,6 +436,8 @@ TEST_CASE(
   CHECK(error_with("").find("[[pass]]") != std::string::npos);
   CHECK(error_with("[[pass]]\nshader = \"mine.frag\"\nconvention = \"shadertoy\"")
             .find("taken for plain") != std::string::npos);
+  CHECK(error_with("[[pass]]\nshader = \"mine.frag\"\ndefines = { A = 1 }")
+            .find("the page has no `defines`") != std::string::npos);
   CHECK(ask(page, R"({"do":"shader_text","name":"none.frag"})").find("error") != nullptr);
 }
 
