@@ -8,6 +8,7 @@
 #include "dof/pipelines/picture_codes.h"
 #include "dof/pipelines/pipeline_textures.h"
 #include "raster/images/texel.h"
+#include "raster/passes/draw_mipmaps.h"
 #include "raster/threads/loops.h"
 
 namespace softfocus {
@@ -198,7 +199,7 @@ std::vector<Texture> draw_pass(const Pipeline& pipeline, std::size_t number, con
   for (const PipelineInput& input : pass.inputs) {
     const Texture* texture = drawn.texture_of(input);
     if (input.sampler.filter == Filter::trilinear && texture->levels.size() == 1) {
-      generate_mipmaps(with_levels.emplace_back(*texture), profile);
+      generate_mipmaps_as(with_levels.emplace_back(*texture), profile);
       texture = &with_levels.back();
     }
     textures[input.texture] = {.texture = texture, .sampler = input.sampler};

@@ -5,8 +5,12 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <utility>
+#include <variant>
 
+#include "raster/pipeline/assemble.h"
+#include "raster/pipeline/interpolate.h"
 #include "raster/shaders/link_shaders.h"
 #include "raster/shaders/shader_batches.h"
 #include "raster/shaders/simplify_tree.h"
@@ -31,6 +35,69 @@ int width_of(const ShaderPass& pass) {
   return 0;
 }
 
+/// The place in the picture on a GPU: a varying of a triangle with corners (-1, -1), (3, -1) and
+/// (-1, 3), or of what clipping leaves of it.
+class PlacePlanes {
+ public:
+  static constexpr std::array kKinds{Interpolation::perspective, Interpolation::perspective};
+
+  PlacePlanes(const TriangleSetup& setup, const std::array<Varyings<2>, 3>& corners,
+              const Profile& profile)
+      : setup_(setup), planes_(planes_of({setup, corners, 2}, profile)) {}
+
+  /// The pixels of a row that are its own.
+  Span span(int y, int x_begin, int x_end) const {
+    const Rectangle& bounds = setup_.bounds;
+    if (y < bounds.y_begin || y >= bounds.y_end) return {};
+    x_begin = std::max(x_begin, bounds.x_begin);
+    x_end = std::min(x_end, bounds.x_end);
+    return x_begin < x_end ? covered_span(setup_, y, x_begin, x_end) : Span{};
+  }
+
+  /// u or v at each pixel of the batch.
+  void fill(std::size_t component, const Batch& batch, std::span<std::uint32_t> to) const {
+    std::visit(
+        [&](const auto& planes) {
+          for (int lane = 0; lane < batch.lanes; ++lane) {
+            const auto pixel = planes.pixel(batch.column(lane), batch.row(lane));
+            to[static_cast<std::size_t>(lane)] =
+                std::bit_cast<std::uint32_t>(planes.varying(pixel, component));
+          }
+        },
+        planes_);
+  }
+
+ private:
+  using FromOrigin = PlaneInterpolator<PlanesFromOrigin, 2>;
+  using ByQuad = PlaneInterpolator<PlanesByQuad, 2>;
+  TriangleSetup setup_;
+  std::variant<FromOrigin, ByQuad> planes_;
+
+  static std::variant<FromOrigin, ByQuad> planes_of(const Triangle<2>& triangle,
+                                                    const Profile& profile) {
+    if (profile.attributes == AttributeSetup::planes_by_quad) {
+      return ByQuad{triangle, profile, kKinds};
+    }
+    return FromOrigin{triangle, profile, kKinds};
+  }
+};
+
+/// None where attributes are no planes: there the place is (x + 1/2) / width.
+std::vector<PlacePlanes> place_planes(int width, int height, const Profile& profile) {
+  std::vector<PlacePlanes> made;
+  if (profile.attributes == AttributeSetup::exact_barycentric) return made;
+  const Rectangle all{0, 0, width, height};
+  const std::array<VertexOutput<2>, 3> corners{
+      {{{-1, -1, 0, 1}, {0, 0}}, {{3, -1, 0, 1}, {2, 0}}, {{-1, 3, 0, 1}, {0, 2}}}};
+  to_window_triangles(
+      corners, PlacePlanes::kKinds, ProvokingVertex::last, all, profile,
+      [&](const std::array<WindowVertex, 3>& window, const std::array<Varyings<2>, 3>& varyings) {
+        const auto setup = set_up_triangle(window, Cull::none, FrontFace::clockwise, all, profile);
+        if (setup) made.emplace_back(*setup, varyings, profile);
+      });
+  return made;
+}
+
 class Run {
  public:
   Run(const ShaderProgram& program, const ShaderPass& pass, ThreadPool& pool)
@@ -52,6 +119,7 @@ class Run {
       height_ = target.height;
     }
     find_columns();
+    planes_ = place_planes(width_, height_, pass.profile);
     for (const auto& output : program.outputs) {
       if (output.output.builtin >= 0) continue;
       const auto location = static_cast<std::size_t>(output.output.location);
@@ -69,7 +137,9 @@ class Run {
     for_each_band_with<BatchMemory>(pool_, down, 4, [&](int first, int end, BatchMemory& memory) {
       for (int j = first; j < end; ++j) {
         for (int i = 0; i < across; ++i) {
-          run_batch({i * columns, j * rows, lanes_, rows == 2}, memory);
+          const Batch batch{i * columns, j * rows, lanes_, rows == 2};
+          if (planes_.empty()) run_batch(batch, nullptr, memory);
+          for (const PlacePlanes& planes : planes_) run_batch(batch, &planes, memory);
         }
       }
     });
@@ -87,6 +157,7 @@ class Run {
 
   /// Of columns, as many as batches have: x + 1/2, and their place in the picture.
   std::vector<float> columns_{}, u_{};
+  std::vector<PlacePlanes> planes_{};
 
   void find_columns() {
     const auto count = static_cast<std::size_t>(width_ + lanes_);
@@ -151,15 +222,31 @@ class Run {
     }
   }
 
-  void run_batch(const Batch& batch, BatchMemory& memory) {
-    batches_.run(memory,
-                 [&](const ShaderInput& of, std::span<std::uint32_t> to) { fill(of, batch, to); });
+  /// Of the pixels of `planes`, if they are not null.
+  void run_batch(const Batch& batch, const PlacePlanes* planes, BatchMemory& memory) {
+    const int rows = batch.quads ? 2 : 1, x_end = std::min(batch.x + lanes_ / rows, width_);
+    std::array<Span, 2> spans{};
+    for (int row = 0; row < rows && batch.y + row < height_; ++row) {
+      spans[static_cast<std::size_t>(row)] =
+          planes != nullptr ? planes->span(batch.y + row, batch.x, x_end) : Span{batch.x, x_end};
+    }
+    const auto is_empty = [](const Span& span) { return span.x_begin >= span.x_end; };
+    if (std::all_of(spans.begin(), spans.end(), is_empty)) return;
+    batches_.run(memory, [&](const ShaderInput& of, std::span<std::uint32_t> to) {
+      const bool is_place = of.builtin < 0 && of.component < 2 && !given(of);
+      if (planes != nullptr && is_place) {
+        planes->fill(static_cast<std::size_t>(of.component), batch, to);
+      } else {
+        fill(of, batch, to);
+      }
+    });
     for (std::size_t i = 0; i < std::min(pass_.targets.size(), kMostTargets); ++i) {
-      if (pass_.targets[i].texels != nullptr) store(i, batch, memory);
+      if (pass_.targets[i].texels != nullptr) store(i, batch, spans, memory);
     }
   }
 
-  void store(std::size_t target, const Batch& batch, const BatchMemory& memory) const {
+  void store(std::size_t target, const Batch& batch, const std::array<Span, 2>& spans,
+             const BatchMemory& memory) const {
     const ImageView& to = pass_.targets[target];
     constexpr int kMostLanes = 1024;
     alignas(64) std::array<std::array<float, kMostLanes>, 4> values;
@@ -186,12 +273,17 @@ class Run {
           values[c][static_cast<std::size_t>(i)] = all[i / 2 * 4 + row * 2 + (i & 1)];
         }
       }
+      const Span& span = spans[static_cast<std::size_t>(row)];
       const std::int32_t* dead = nullptr;
-      if (program_.killed.is_there) {
+      if (program_.killed.is_there || span.x_end - span.x_begin < count) {
         const auto* all =
-            reinterpret_cast<const std::int32_t*>(batches_.place(memory, program_.killed));
+            program_.killed.is_there
+                ? reinterpret_cast<const std::int32_t*>(batches_.place(memory, program_.killed))
+                : nullptr;
         for (int i = 0; i < columns; ++i) {
-          killed[static_cast<std::size_t>(i)] = all[rows == 1 ? i : i / 2 * 4 + row * 2 + (i & 1)];
+          const int x = batch.x + i, lane = rows == 1 ? i : i / 2 * 4 + row * 2 + (i & 1);
+          const bool is_mine = x >= span.x_begin && x < span.x_end;
+          killed[static_cast<std::size_t>(i)] = !is_mine ? -1 : all != nullptr ? all[lane] : 0;
         }
         dead = killed.data();
       }

@@ -289,13 +289,20 @@ template <ShaderOp op>
 void run_derivative(const LaneStep& step, LaneFrame& frame) {
   const std::byte* a = frame.memory + step.a;
   std::byte* to = frame.memory + step.to;
+  // softpipe has one difference for a block, along x from its second row.
+  const bool is_softpipe = frame.profile->attributes == AttributeSetup::planes_by_quad;
+  constexpr bool is_along_x = op == ShaderOp::derivative_x || op == ShaderOp::derivative_x_coarse;
+  constexpr bool is_coarse =
+      op == ShaderOp::derivative_x_coarse || op == ShaderOp::derivative_y_coarse;
   for (int n = step.vectors; n > 0; --n) {
     const Floats v = as_floats(bits_at(a));
-    Floats made = along_y(v);
-    if constexpr (op == ShaderOp::derivative_x) made = along_x(v);
-    if constexpr (op == ShaderOp::derivative_x_coarse) made = spread<1>(v) - spread<0>(v);
-    if constexpr (op == ShaderOp::derivative_y_coarse) made = spread<2>(v) - spread<0>(v);
-    if constexpr (op == ShaderOp::derivative_y || op == ShaderOp::derivative_y_coarse) {
+    Floats made;
+    if constexpr (is_along_x) {
+      made = is_softpipe ? spread<3>(v) - spread<2>(v)
+             : is_coarse ? spread<1>(v) - spread<0>(v)
+                         : along_x(v);
+    } else {
+      made = is_softpipe || is_coarse ? spread<2>(v) - spread<0>(v) : along_y(v);
       if (frame.y_is_up) made = -made;
     }
     put_bits(to, as_bits(made));

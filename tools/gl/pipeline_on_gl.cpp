@@ -182,9 +182,9 @@ void PipelineOnGl::draw(std::size_t number, std::size_t turn, const GlTexture& p
         continue;
       }
       const GlTexture& texture = texture_of(input, picture);
-      if (input.sampler.filter == Filter::trilinear && input.source != PipelineSource::texture) {
-        generate_levels(texture);
-      }
+      const bool has_levels = input.source == PipelineSource::texture &&
+                              pipeline_.textures[input.number].levels.size() > 1;
+      if (input.sampler.filter == Filter::trilinear && !has_levels) generate_levels(texture);
       set_sampler(texture, input.sampler, uniform.shape);
       set_texture(pass.program, uniform.name.c_str(), unit++, texture, uniform.shape);
     }

@@ -232,8 +232,58 @@ TEST_CASE("shaders that discard draw the bits of stages that do") {
 
 TEST_CASE("coarse derivatives of varyings are those of stages, also of pixels that discard") {
   if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
-  compare_to_cpp<false, true>({"ieee", "llvmpipe"});
+  compare_to_cpp<false, true>({"ieee", "llvmpipe", "softpipe"});
   compare_to_cpp<true, true>({"ieee"});
+}
+
+TEST_CASE("a shader over a picture has the bits of a draw of the triangle over it") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const std::string fragment = R"(#version 450
+layout(location = 0) in vec4 place;
+layout(location = 0) out vec4 first;
+layout(location = 1) out vec4 second;
+void main() {
+  if (place.x > 0.6 && place.y < 0.1) discard;
+  first = place;
+  second = vec4(dFdx(place.x), dFdy(place.xy), gl_FragCoord.z / gl_FragCoord.w);
+})";
+  ShaderDraw by_triangle = draw_of(R"(#version 450
+layout(location = 0) in vec2 corner;
+layout(location = 0) out vec4 place;
+void main() {
+  gl_Position = vec4(corner, 0.0, 1.0);
+  place = vec4(corner * 0.5 + 0.5, 0.0, 1.0);
+})",
+                                   fragment);
+  constexpr std::array kCorners{-1.0f, -1.0f, 3.0f, -1.0f, -1.0f, 3.0f};
+  by_triangle.attributes = {
+      {0, 2, reinterpret_cast<const std::byte*>(kCorners.data()), 2 * sizeof(float)}};
+  const std::vector<std::uint32_t> indices{0, 1, 2};
+  const UserShader over = make_shader(words_of(fragment, ShaderStage::fragment));
+  DrawState state;
+  state.cull = Cull::none;
+  state.depth.reset();
+  for (const char* const name : {"llvmpipe", "llvmpipe-sse41", "softpipe"}) {
+    for (const auto& [width, height] : {std::pair{300, 200}, {257, 131}, {1, 1}, {67, 1080}}) {
+      const std::string where = std::string{name} + " " + std::to_string(width);
+      CAPTURE(where);
+      const Profile profile = test::profile_named(name);
+      std::array<std::array<Image, 2>, 2> drawn;
+      ThreadPool pool{2};
+      for (auto& images : drawn) {
+        for (Image& image : images) image = make_image(Format::rgba32f, width, height);
+      }
+      RenderPass pass{
+          .targets = {.colour = {&drawn[0][0], &drawn[0][1]}}, .profile = profile, .draws = {}};
+      draw_shaders(pass, state, indices, 3, by_triangle);
+      finish(pass, pool);
+      const std::array<ImageView, 2> targets{drawn[1][0], drawn[1][1]};
+      run_shader(compile_shader(over, over.uniforms.words),
+                 {.targets = targets, .profile = profile}, pool);
+      CHECK(drawn[0][0].bytes == drawn[1][0].bytes);
+      CHECK(drawn[0][1].bytes == drawn[1][1].bytes);
+    }
+  }
 }
 
 TEST_CASE("blended and peeled fragments merge in the order of submission") {

@@ -77,24 +77,37 @@ void draw_triangles(const ShaderDraw& draw, const std::vector<std::uint32_t>& in
   finish(pass, gl.pool);
 }
 
-/// Whether the three vertices are a triangle over the whole target, and pixels neither tested nor
-/// blended: then they are shaded in rows (run_shader()), with the same bits.
+/// Whether the three vertices are a triangle over the whole target, whose varyings are the place in
+/// it, and pixels neither tested nor blended: then they are shaded in rows (run_shader()).
 bool is_fullscreen(const ShaderDraw& draw, std::uint32_t vertex_count) {
   EmulatedGl& gl = emulated::gl();
   if (vertex_count != 3 || gl.tests_depth || gl.blends || gl.culls) return false;
+  std::vector<ShaderVarying> varyings;
   for (const ShaderProgram::Input& of : draw.fragment->inputs) {
+    const bool is_varying = of.input.builtin < 0;
     const bool is_place = of.input.builtin == static_cast<int>(SpirvBuiltin::frag_coord);
-    if (of.input.uniform < 0 && !is_place) return false;
+    if (of.input.uniform >= 0 || is_place) continue;
+    if (!is_varying || of.input.is_flat || of.input.is_whole) return false;
+    varyings.push_back({of.input.location, of.input.component});
   }
   std::array<glm::vec4, 3> corners{};
+  std::vector<std::uint32_t> values(3 * varyings.size());
   run_vertices(*draw.vertex,
                {.vertex_count = 3,
                 .attributes = draw.attributes,
                 .textures = draw.vertex_textures,
+                .varyings = varyings,
                 .positions = corners,
+                .values = values,
                 .profile = gl.profile,
                 .uniforms = draw.vertex_uniforms},
                gl.pool);
+  constexpr std::array kPlaces{glm::vec4{0, 0, 0, 1}, glm::vec4{2, 0, 0, 1}, glm::vec4{0, 2, 0, 1}};
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const glm::vec4& place = kPlaces[i / varyings.size()];
+    const float value = std::bit_cast<float>(values[i]);
+    if (value != place[varyings[i % varyings.size()].component]) return false;
+  }
   return corners ==
          std::array{glm::vec4{-1, -1, 0, 1}, glm::vec4{3, -1, 0, 1}, glm::vec4{-1, 3, 0, 1}};
 }
