@@ -71,12 +71,26 @@ std::vector<std::uint32_t> words_of(const softfocus_shader_source& source) {
     refuse("source.stage", std::to_string(source.stage) +
                                " is no stage; there are SOFTFOCUS_FRAGMENT and SOFTFOCUS_VERTEX");
   }
-  const GlslSource text{
+  GlslSource text{
       .stage = source.stage == SOFTFOCUS_VERTEX ? ShaderStage::vertex : ShaderStage::fragment,
       .name = source.name != nullptr ? source.name : "shader",
       .text = source.text,
       .convention = convention_of(source.convention)};
-  return compile_glsl(text, [](const std::string&) { return std::nullopt; }).words;
+  if (source.defines == nullptr && source.define_count > 0) {
+    refuse("source.defines", "a null pointer");
+  }
+  for (const char* const of : std::span{source.defines, source.define_count}) {
+    if (of == nullptr) refuse("source.defines", "a null pointer");
+    const std::string fault = add_definition(text.defines, of);
+    if (!fault.empty()) refuse("source.defines", "'" + std::string{of} + "': " + fault);
+  }
+  const auto read = [&](const std::string& path) -> std::optional<std::string> {
+    if (source.read_include == nullptr) return {};
+    const char* const found = source.read_include(source.user, path.c_str());
+    if (found == nullptr) return {};
+    return found;
+  };
+  return compile_glsl(text, read).words;
 }
 
 std::shared_ptr<const ShaderProgram> program_of(softfocus_shader& shader) {

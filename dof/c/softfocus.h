@@ -196,6 +196,12 @@ typedef struct softfocus_shader_source {
   const char* name;       /* for messages; null: "shader" */
   const char* convention; /* "plain", "shadertoy", "three", "libretro" or "gl-transitions"; null:
                              recognised by the text */
+  const char* const* defines; /* macros, "NAME" or "NAME=VALUE" */
+  size_t define_count;
+  /* The text of a file that #include names, by its path from `name`'s folder; null: there is none.
+   * It is copied before the next call. May be null: then nothing is included. */
+  const char* (*read_include)(void* user, const char* path);
+  void* user;
 } softfocus_shader_source;
 
 /* A compiled shader with the uniforms and textures that were set. One thread at a time may use it.
@@ -286,8 +292,7 @@ SOFTFOCUS_API int softfocus_refocus(softfocus_context* context, const softfocus_
 SOFTFOCUS_API int softfocus_plan(softfocus_context* context, const softfocus_picture* picture,
                                  const softfocus_settings* settings, softfocus_report* report);
 
-/* Compiles a shader, once for many runs. It is null if the call fails. Of GLSL that needs #include
- * "FILE" nothing is read: hand over the whole text. */
+/* Compiles a shader, once for many runs. It is null if the call fails. */
 SOFTFOCUS_API int softfocus_compile_shader(softfocus_context* context,
                                            const softfocus_shader_source* source,
                                            softfocus_shader** shader);

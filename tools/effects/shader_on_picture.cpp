@@ -176,17 +176,12 @@ void add_shader_options(CLI::App& parser, ShaderOptions& options) {
   add_choice(parser, "--convention",
              "Where the shaders come from (default: recognised by their text)", kGlslConventions,
              options.convention);
-  add_repeatable_value(
-      parser, "--define", "NAME[=VALUE]", "A macro of the --shader files; without a value it is 1",
-      [&options](const std::string& text) {
-        const std::size_t end = std::min(text.find('='), text.size());
-        const std::string name = text.substr(0, end);
-        std::string value = end < text.size() ? text.substr(end + 1) : "1";
-        if (const std::string fault = definition_fault(name, value); !fault.empty()) {
-          throw UsageError("--define '" + text + "': " + fault);
-        }
-        options.defines[name] = std::move(value);
-      });
+  add_repeatable_value(parser, "--define", "NAME[=VALUE]",
+                       "A macro of the --shader files; without a value it is 1",
+                       [&options](const std::string& text) {
+                         const std::string fault = add_definition(options.defines, text);
+                         if (!fault.empty()) throw UsageError("--define '" + text + "': " + fault);
+                       });
   add_repeatable_value(parser, "--include", "FOLDER",
                        "Where #include of the --shader files looks for what is not beside them",
                        [&options](const std::string& text) {

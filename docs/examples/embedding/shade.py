@@ -29,6 +29,10 @@ class Source(ctypes.Structure):
         ("word_count", ctypes.c_size_t),
         ("name", ctypes.c_char_p),
         ("convention", ctypes.c_char_p),
+        ("defines", ctypes.c_void_p),
+        ("define_count", ctypes.c_size_t),
+        ("read_include", ctypes.c_void_p),
+        ("user", ctypes.c_void_p),
     ]
 
 

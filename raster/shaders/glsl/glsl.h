@@ -77,6 +77,9 @@ struct CompiledGlsl {
 /// Why `#define NAME VALUE` cannot stand before a shader; empty if it can.
 std::string definition_fault(std::string_view name, std::string_view value);
 
+/// Adds the macro of a text "NAME", which is 1, or "NAME=VALUE"; a fault as definition_fault().
+std::string add_definition(std::map<std::string, std::string>& defines, std::string_view text);
+
 /// What a text may have at the most, with all that it includes.
 inline constexpr std::size_t kMostGlslBytes = std::size_t{1} << 20;
 

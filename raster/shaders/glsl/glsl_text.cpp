@@ -544,6 +544,15 @@ std::string definition_fault(std::string_view name, std::string_view value) {
   return {};
 }
 
+std::string add_definition(std::map<std::string, std::string>& defines, std::string_view text) {
+  const std::size_t end = std::min(text.find('='), text.size());
+  const std::string name{text.substr(0, end)};
+  std::string value{end < text.size() ? text.substr(end + 1) : "1"};
+  std::string fault = definition_fault(name, value);
+  if (fault.empty()) defines[name] = std::move(value);
+  return fault;
+}
+
 GlslText glsl_text(const GlslSource& source, const GlslReader& read, bool raise, int least) {
   if (is_hlsl(source)) return hlsl_text(source, read);
   GlslText out;

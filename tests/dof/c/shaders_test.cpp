@@ -178,6 +178,47 @@ TEST_CASE("the C interface: a shader, as text or as words, gives run_shader()'s 
   }
 }
 
+TEST_CASE("the C interface: macros, and files that a callback reads") {
+  if (is_glsl_missing()) return;
+  const Context context = open_context();
+  softfocus_shader_source source = text_source(
+      "#version 330\n#include \"parts/first.glsl\"\nout vec4 c;\n"
+      "void main() { c = vec4(FIRST, SECOND, flag, 4.0); }\n");
+  source.name = "folder/mine.frag";
+  std::vector<const char*> defines{"flag", "SECOND=2.5"};
+  std::vector<std::string> asked;
+  source.defines = defines.data();
+  source.define_count = defines.size();
+  source.user = &asked;
+  source.read_include = [](void* user, const char* path) -> const char* {
+    auto& all = *static_cast<std::vector<std::string>*>(user);
+    all.emplace_back(path);
+    if (all.back() == "folder/parts/first.glsl") return "#include \"one.glsl\"\n";
+    return all.back() == "folder/parts/one.glsl" ? "#define FIRST 7.0\n" : nullptr;
+  };
+  const Shader shader = compiled_in_c(context.get(), source);
+  REQUIRE(shader != nullptr);
+  CHECK(pixel_of<float>(context.get(), shader, SOFTFOCUS_FORMAT_RGBA32F) ==
+        std::array{7.0f, 2.5f, 1.0f, 4.0f});
+  CHECK(asked == std::vector<std::string>{"folder/parts/first.glsl", "folder/parts/one.glsl"});
+
+  const auto message = [&](const softfocus_shader_source& of) {
+    softfocus_shader* none = nullptr;
+    CHECK(softfocus_compile_shader(context.get(), &of, &none) != SOFTFOCUS_OK);
+    CHECK(none == nullptr);
+    return std::string{softfocus_message(context.get())};
+  };
+  softfocus_shader_source alone = source;
+  alone.read_include = nullptr;
+  CHECK(message(alone).find("folder/mine.frag:2") == 0);
+  defines[1] = "2ND=1";
+  CHECK(message(source).find("source.defines: '2ND=1': the name has to be") == 0);
+  defines[1] = nullptr;
+  CHECK(message(source) == "source.defines: a null pointer");
+  source.defines = nullptr;
+  CHECK(message(source) == "source.defines: a null pointer");
+}
+
 TEST_CASE("the C interface: a late uniform gives the bits of a compiled one, run after run") {
   if (is_glsl_missing()) return;
   const Context context = open_context();
