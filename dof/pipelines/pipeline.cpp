@@ -97,7 +97,8 @@ std::shared_ptr<const ShaderProgram> program_of(const Pipeline& pipeline, std::s
     if (of.pass == number && of.words == words) return of.program;
   }
   const PipelinePass& pass = pipeline.passes[number];
-  auto program = std::make_shared<const ShaderProgram>(compile_shader(pass.shader, words));
+  auto program =
+      std::make_shared<const ShaderProgram>(compile_shader(pass.shader, words, {}, true));
   if (programs.all.size() >= PipelinePrograms::kMost) programs.all.clear();
   programs.all.push_back({number, std::move(words), program});
   return program;

@@ -155,17 +155,19 @@ class Run {
   std::array<std::array<const ShaderRegister*, 4>, kMostTargets> outputs_{};
   std::array<bool, kMostTargets> are_bits_{};
 
-  /// Of columns, as many as batches have: x + 1/2, and their place in the picture.
+  /// Of columns, as many as batches have: x + 1/2, and their place in the picture. With
+  /// differences each two columns twice, as the lanes of a block have them.
   std::vector<float> columns_{}, u_{};
   std::vector<PlacePlanes> planes_{};
 
   void find_columns() {
-    const auto count = static_cast<std::size_t>(width_ + lanes_);
+    const bool quads = program_.has_derivatives;
+    const auto count = static_cast<std::size_t>(width_ + lanes_) * (quads ? 2 : 1);
     columns_.resize(count);
     u_.resize(count);
-    for (std::size_t x = 0; x < count; ++x) {
-      columns_[x] = static_cast<float>(x) + 0.5f;
-      u_[x] = columns_[x] / static_cast<float>(width_);
+    for (std::size_t i = 0; i < count; ++i) {
+      columns_[i] = static_cast<float>(quads ? i / 4 * 2 + (i & 1) : i) + 0.5f;
+      u_[i] = columns_[i] / static_cast<float>(width_);
     }
   }
 
@@ -213,12 +215,14 @@ class Run {
       }
       return;
     }
-    const std::array rows{columns != nullptr ? 0u : of_row(of, batch.y),
-                          columns != nullptr ? 0u : of_row(of, batch.y + 1)};
-    for (int lane = 0; lane < lanes_; ++lane) {
-      to[static_cast<std::size_t>(lane)] =
-          columns != nullptr ? std::bit_cast<std::uint32_t>(columns[batch.column(lane)])
-                             : rows[static_cast<std::size_t>(lane >> 1 & 1)];
+    if (columns != nullptr) {
+      std::memcpy(to.data(), columns + 2 * batch.x, to.size_bytes());
+      return;
+    }
+    const std::uint32_t upper = of_row(of, batch.y), lower = of_row(of, batch.y + 1);
+    const std::array block{upper, upper, lower, lower};
+    for (std::size_t lane = 0; lane < to.size(); lane += 4) {
+      std::memcpy(&to[lane], block.data(), sizeof block);
     }
   }
 
@@ -296,6 +300,28 @@ class Run {
   }
 };
 
+/// Inputs that are the place in the picture: of each component one, and 0 and 1 are known.
+void join_places(ShaderTree& tree, ShaderRegion& region) {
+  for (ShaderNode& node : region) {
+    if (node.first) join_places(tree, *node.first);
+    if (node.second) join_places(tree, *node.second);
+    ShaderInstruction& in = node.instruction;
+    if (node.kind != ShaderNodeKind::instruction || in.op != ShaderOp::input) continue;
+    const ShaderInput& of = tree.inputs[in.place];
+    if (of.builtin >= 0 || of.uniform >= 0) continue;
+    if (of.component >= 2) {
+      in.op = ShaderOp::copy;
+      in.a = tree.constant(std::bit_cast<std::uint32_t>(of.component == 3 ? 1.0f : 0.0f));
+      continue;
+    }
+    const auto same =
+        std::find_if(tree.inputs.begin(), tree.inputs.end(), [&](const ShaderInput& i) {
+          return i.builtin < 0 && i.uniform < 0 && i.component == of.component;
+        });
+    in.place = static_cast<std::uint32_t>(same - tree.inputs.begin());
+  }
+}
+
 }  // namespace
 
 UserShader make_shader(std::vector<std::uint32_t> words) {
@@ -324,8 +350,9 @@ std::optional<std::uint32_t> uniform_word(const ShaderUniform& of, double value)
 }
 
 ShaderProgram compile_shader(const UserShader& shader, std::span<const std::uint32_t> words,
-                             const std::vector<bool>& is_late) {
+                             const std::vector<bool>& is_late, bool are_places) {
   ShaderTree tree = lower_spirv(*shader.module, words, is_late);
+  if (are_places) join_places(tree, tree.main);
   simplify(tree);
   ShaderProgram program = emit_program(tree);
   if (shader.module->stage == ShaderStage::vertex && program.has_derivatives) {

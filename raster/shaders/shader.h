@@ -38,9 +38,9 @@ std::optional<std::uint32_t> uniform_word(const ShaderUniform& of, double value)
 
 /// A shader with its uniforms: `words` as ShaderUniforms has them. With `is_late`, the words that
 /// it marks are given when the shader runs (BatchSettings::uniforms), and the program is slower.
-/// Throws ShaderError.
+/// With `are_places`, for run_shader() without varyings alone, and faster. Throws ShaderError.
 ShaderProgram compile_shader(const UserShader& shader, std::span<const std::uint32_t> words,
-                             const std::vector<bool>& is_late = {});
+                             const std::vector<bool>& is_late = {}, bool are_places = false);
 
 /// Which of a shader's textures a program samples, by their numbers.
 std::vector<bool> sampled_textures(const ShaderProgram& program, std::size_t count);

@@ -217,70 +217,90 @@ constexpr bool is_ternary(ShaderOp op) {
          op == extract_bits_signed || op == extract_bits_unsigned || is_of_doubles(op);
 }
 
+/// Whether it is a few instructions.
+constexpr bool is_short(ShaderOp op) {
+  using enum ShaderOp;
+  return op < fused_multiply_add || (op >= equal && op <= is_infinite) || op == ShaderOp::select ||
+         op == copy || (op >= bit_and && op <= bit_not) || op == add_integers ||
+         op == subtract_integers;
+}
+
+/// Calls one(), which moves on by a vector, for each of them. Most steps do so little that the
+/// loop is felt: four at a time.
+template <class One>
+SOFTFOCUS_INLINE void for_each_vector(int vectors, const One& one) {
+  if (vectors % 4 != 0) {
+    for (; vectors > 0; --vectors) one();
+    return;
+  }
+  for (; vectors > 0; vectors -= 4) {
+    one();
+    one();
+    one();
+    one();
+  }
+}
+
+/// The vectors of an operand, from the first on. Copied from the step: what is stored could be the
+/// step for all that the compiler knows.
+struct Operand {
+  const std::byte* at;
+  std::size_t next;
+  SOFTFOCUS_INLINE Bits operator()() {
+    const Bits v = bits_at(at);
+    at += next;
+    return v;
+  }
+};
+
 template <ShaderOp op>
 void run_step(const LaneStep& step, LaneFrame& frame) {
-  const std::byte* a = frame.memory + step.a;
-  const std::byte* b = frame.memory + step.b;
-  const std::byte* c = frame.memory + step.c;
-  [[maybe_unused]] const std::byte* d = frame.memory + step.d;
+  Operand a{frame.memory + step.a, step.a_next}, b{frame.memory + step.b, step.b_next};
+  Operand c{frame.memory + step.c, step.c_next}, d{frame.memory + step.d, step.d_next};
   std::byte* to = frame.memory + step.to;
-  for (int n = step.vectors; n > 0; --n) {
+  const auto one = [&]() {
     Bits of_b{}, of_c{}, of_d{};
-    if constexpr (is_binary(op)) {
-      of_b = bits_at(b);
-      b += step.b_next;
-    }
-    if constexpr (is_ternary(op)) {
-      of_c = bits_at(c);
-      c += step.c_next;
-    }
-    if constexpr (is_of_doubles(op)) {
-      of_d = bits_at(d);
-      d += step.d_next;
-    }
-    put_bits(to, apply<op>(bits_at(a), of_b, of_c, of_d));
-    a += step.a_next;
+    if constexpr (is_binary(op)) of_b = b();
+    if constexpr (is_ternary(op)) of_c = c();
+    if constexpr (is_of_doubles(op)) of_d = d();
+    put_bits(to, apply<op>(a(), of_b, of_c, of_d));
     to += sizeof(Bits);
+  };
+  if constexpr (is_short(op)) {
+    for_each_vector(step.vectors, one);
+  } else {
+    for (int n = step.vectors; n > 0; --n) one();
   }
 }
 
 void run_and_not(const LaneStep& step, LaneFrame& frame) {
-  const std::byte* a = frame.memory + step.a;
-  const std::byte* b = frame.memory + step.b;
+  Operand a{frame.memory + step.a, step.a_next}, b{frame.memory + step.b, step.b_next};
   std::byte* to = frame.memory + step.to;
-  for (int n = step.vectors; n > 0; --n) {
-    put_bits(to, bits_at(a) & ~bits_at(b));
-    a += step.a_next;
-    b += step.b_next;
+  for_each_vector(step.vectors, [&]() {
+    const Bits of_b = b();
+    put_bits(to, a() & ~of_b);
     to += sizeof(Bits);
-  }
+  });
 }
 
 void run_masked_copy(const LaneStep& step, LaneFrame& frame) {
-  const std::byte* a = frame.memory + step.a;
-  const std::byte* b = frame.memory + step.b;
+  Operand a{frame.memory + step.a, step.a_next}, b{frame.memory + step.b, step.b_next};
   std::byte* to = frame.memory + step.to;
-  for (int n = step.vectors; n > 0; --n) {
-    put_bits(to, select((Mask)as_ints(bits_at(b)), bits_at(a), bits_at(to)));
-    a += step.a_next;
-    b += step.b_next;
+  for_each_vector(step.vectors, [&]() {
+    put_bits(to, select((Mask)as_ints(b()), a(), bits_at(to)));
     to += sizeof(Bits);
-  }
+  });
 }
 
 void run_multiply_add(const LaneStep& step, LaneFrame& frame) {
-  const std::byte* a = frame.memory + step.a;
-  const std::byte* b = frame.memory + step.b;
-  const std::byte* c = frame.memory + step.c;
+  Operand a{frame.memory + step.a, step.a_next}, b{frame.memory + step.b, step.b_next};
+  Operand c{frame.memory + step.c, step.c_next};
   std::byte* to = frame.memory + step.to;
-  for (int n = step.vectors; n > 0; --n) {
-    const Floats product = as_floats(bits_at(a)) * as_floats(bits_at(b));
-    put_bits(to, as_bits(product + as_floats(bits_at(c))));
-    a += step.a_next;
-    b += step.b_next;
-    c += step.c_next;
+  for_each_vector(step.vectors, [&]() {
+    const Floats product = as_floats(a()) * as_floats(b());
+    put_bits(to, as_bits(product + as_floats(c())));
     to += sizeof(Bits);
-  }
+  });
 }
 
 // --- derivatives ---
