@@ -279,6 +279,19 @@ class Emitter {
     put_step(number_of(ShaderOp::bit_and), mask, mask, live);
   }
 
+  /// Whether it is worth while to run it over fewer lanes.
+  static bool is_long(const ShaderRegion& region) {
+    constexpr std::size_t kLong = 8;
+    return region.size() >= kLong ||
+           std::any_of(region.begin(), region.end(),
+                       [](const ShaderNode& node) { return node.kind != instruction; });
+  }
+  ShaderRegister keep_range() {
+    const ShaderRegister range = new_register(false);
+    put_step(number_of(StepOp::keep_range), range);
+    return range;
+  }
+
   void run_branch(const ShaderNode& node, ShaderRegister mask) {
     const ShaderRegister condition = of(node.instruction.a);
     const bool some_left = some_leave(*node.first) || some_leave(*node.second);
@@ -298,14 +311,18 @@ class Emitter {
       drop_left(mask, some_left);
       return;
     }
+    ShaderRegister range;
+    if (is_long(*node.first) || is_long(*node.second)) range = keep_range();
     for (int side = 0; side < 2; ++side) {
       const ShaderRegion& inner = side == 0 ? *node.first : *node.second;
       if (inner.empty()) continue;
       const ShaderRegister here_mask = mask_and(mask, condition, side == 1);
       const std::size_t over = here();
-      put_step(number_of(StepOp::jump_if_none), {}, here_mask);
+      const bool narrows = is_long(inner);
+      put_step(number_of(StepOp::jump_if_none), {}, here_mask).count = narrows ? 1 : 0;
       region(inner, here_mask);
       land(over);
+      if (narrows) put_step(number_of(StepOp::widen_range), {}, range);
     }
     drop_left(mask, some_left);
   }
@@ -317,11 +334,13 @@ class Emitter {
       inner = scopes_.back().live = new_register(true);
       put_step(number_of(ShaderOp::copy), inner, mask.is_there ? mask : all_lanes());
     }
+    ShaderRegister range;
+    if (node.loops && inner.is_there) range = keep_range();
     const std::size_t begin = here();
     if (node.loops) {
       if (inner.is_there) {
         scopes_.back().jumps.push_back(here());
-        put_step(number_of(StepOp::jump_if_none), {}, inner);
+        put_step(number_of(StepOp::jump_if_none), {}, inner).count = 1;
       }
       put_step(number_of(StepOp::check_budget));
     }
@@ -330,6 +349,7 @@ class Emitter {
     const Scope done = std::move(scopes_.back());
     scopes_.pop_back();
     for (const std::size_t jump : done.jumps) land(jump);
+    if (range.is_there) put_step(number_of(StepOp::widen_range), {}, range);
     drop_left(mask, some_leave(*node.first));
   }
 

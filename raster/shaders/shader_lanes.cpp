@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 #include <type_traits>
+#include <utility>
 
 #include "raster/images/decoded_texture.h"
 #include "raster/images/sliced_texture.h"
@@ -117,6 +118,7 @@ LaneProgram lane_program(const ShaderProgram& program, int lanes, Isa isa) {
 bool run_lanes(const LaneProgram& program, LaneFrame& frame, Isa isa, std::size_t& stopped) {
   const LaneStep* const steps = program.steps.data();
   const LaneStep* step = steps;
+  frame.range = {0, static_cast<std::uint32_t>(program.lanes / program.unit_lanes)};
   for (;; ++step) {
     if (step->run != nullptr) {
       step->run(*step, frame);
@@ -133,6 +135,12 @@ bool run_lanes(const LaneProgram& program, LaneFrame& frame, Isa isa, std::size_
         if (bits == 0) step = steps + step->place - 1;
         break;
       }
+      case StepOp::keep_range:
+        std::memcpy(frame.memory + step->to, &frame.range, sizeof frame.range);
+        break;
+      case StepOp::widen_range:
+        std::memcpy(&frame.range, frame.memory + step->a, sizeof frame.range);
+        break;
       case StepOp::check_budget:
         if (frame.budget-- == 0) {
           stopped = static_cast<std::size_t>(step - steps);
@@ -228,7 +236,7 @@ constexpr bool is_short(ShaderOp op) {
 /// Calls one(), which moves on by a vector, for each of them. Most steps do so little that the
 /// loop is felt: four at a time.
 template <class One>
-SOFTFOCUS_INLINE void for_each_vector(int vectors, const One& one) {
+SOFTFOCUS_INLINE void for_each_vector(std::uint32_t vectors, const One& one) {
   if (vectors % 4 != 0) {
     for (; vectors > 0; --vectors) one();
     return;
@@ -246,18 +254,31 @@ SOFTFOCUS_INLINE void for_each_vector(int vectors, const One& one) {
 struct Operand {
   const std::byte* at;
   std::size_t next;
+  Operand(const LaneFrame& frame, std::uint32_t place, std::uint16_t bytes, LaneRange range)
+      : at(frame.memory + place + (bytes != 0 ? range.first_bytes : 0)), next(bytes) {}
   SOFTFOCUS_INLINE Bits operator()() {
     const Bits v = bits_at(at);
     at += next;
     return v;
   }
+  template <class Number>
+  SOFTFOCUS_INLINE void copy_to(Number (&numbers)[kLanes]) {
+    std::memcpy(numbers, at, sizeof numbers);
+    at += next;
+  }
 };
+
+SOFTFOCUS_INLINE std::byte* results_of(const LaneStep& step, const LaneFrame& frame,
+                                       LaneRange range) {
+  return frame.memory + step.to + range.first_bytes;
+}
 
 template <ShaderOp op>
 void run_step(const LaneStep& step, LaneFrame& frame) {
-  Operand a{frame.memory + step.a, step.a_next}, b{frame.memory + step.b, step.b_next};
-  Operand c{frame.memory + step.c, step.c_next}, d{frame.memory + step.d, step.d_next};
-  std::byte* to = frame.memory + step.to;
+  const LaneRange range = range_of(step.vectors, frame);
+  Operand a{frame, step.a, step.a_next, range}, b{frame, step.b, step.b_next, range};
+  Operand c{frame, step.c, step.c_next, range}, d{frame, step.d, step.d_next, range};
+  std::byte* to = results_of(step, frame, range);
   const auto one = [&]() {
     Bits of_b{}, of_c{}, of_d{};
     if constexpr (is_binary(op)) of_b = b();
@@ -267,16 +288,17 @@ void run_step(const LaneStep& step, LaneFrame& frame) {
     to += sizeof(Bits);
   };
   if constexpr (is_short(op)) {
-    for_each_vector(step.vectors, one);
+    for_each_vector(range.count, one);
   } else {
-    for (int n = step.vectors; n > 0; --n) one();
+    for (std::uint32_t n = range.count; n > 0; --n) one();
   }
 }
 
 void run_and_not(const LaneStep& step, LaneFrame& frame) {
-  Operand a{frame.memory + step.a, step.a_next}, b{frame.memory + step.b, step.b_next};
-  std::byte* to = frame.memory + step.to;
-  for_each_vector(step.vectors, [&]() {
+  const LaneRange range = range_of(step.vectors, frame);
+  Operand a{frame, step.a, step.a_next, range}, b{frame, step.b, step.b_next, range};
+  std::byte* to = results_of(step, frame, range);
+  for_each_vector(range.count, [&]() {
     const Bits of_b = b();
     put_bits(to, a() & ~of_b);
     to += sizeof(Bits);
@@ -284,19 +306,21 @@ void run_and_not(const LaneStep& step, LaneFrame& frame) {
 }
 
 void run_masked_copy(const LaneStep& step, LaneFrame& frame) {
-  Operand a{frame.memory + step.a, step.a_next}, b{frame.memory + step.b, step.b_next};
-  std::byte* to = frame.memory + step.to;
-  for_each_vector(step.vectors, [&]() {
+  const LaneRange range = range_of(step.vectors, frame);
+  Operand a{frame, step.a, step.a_next, range}, b{frame, step.b, step.b_next, range};
+  std::byte* to = results_of(step, frame, range);
+  for_each_vector(range.count, [&]() {
     put_bits(to, select((Mask)as_ints(b()), a(), bits_at(to)));
     to += sizeof(Bits);
   });
 }
 
 void run_multiply_add(const LaneStep& step, LaneFrame& frame) {
-  Operand a{frame.memory + step.a, step.a_next}, b{frame.memory + step.b, step.b_next};
-  Operand c{frame.memory + step.c, step.c_next};
-  std::byte* to = frame.memory + step.to;
-  for_each_vector(step.vectors, [&]() {
+  const LaneRange range = range_of(step.vectors, frame);
+  Operand a{frame, step.a, step.a_next, range}, b{frame, step.b, step.b_next, range};
+  Operand c{frame, step.c, step.c_next, range};
+  std::byte* to = results_of(step, frame, range);
+  for_each_vector(range.count, [&]() {
     const Floats product = as_floats(a()) * as_floats(b());
     put_bits(to, as_bits(product + as_floats(c())));
     to += sizeof(Bits);
@@ -307,15 +331,16 @@ void run_multiply_add(const LaneStep& step, LaneFrame& frame) {
 
 template <ShaderOp op>
 void run_derivative(const LaneStep& step, LaneFrame& frame) {
-  const std::byte* a = frame.memory + step.a;
-  std::byte* to = frame.memory + step.to;
+  const LaneRange range = range_of(step.vectors, frame);
+  Operand a{frame, step.a, step.a_next, range};
+  std::byte* to = results_of(step, frame, range);
   // softpipe has one difference for a block, along x from its second row.
   const bool is_softpipe = frame.profile->attributes == AttributeSetup::planes_by_quad;
   constexpr bool is_along_x = op == ShaderOp::derivative_x || op == ShaderOp::derivative_x_coarse;
   constexpr bool is_coarse =
       op == ShaderOp::derivative_x_coarse || op == ShaderOp::derivative_y_coarse;
-  for (int n = step.vectors; n > 0; --n) {
-    const Floats v = as_floats(bits_at(a));
+  for (std::uint32_t n = range.count; n > 0; --n) {
+    const Floats v = as_floats(a());
     Floats made;
     if constexpr (is_along_x) {
       made = is_softpipe ? spread<3>(v) - spread<2>(v)
@@ -326,7 +351,6 @@ void run_derivative(const LaneStep& step, LaneFrame& frame) {
       if (frame.y_is_up) made = -made;
     }
     put_bits(to, as_bits(made));
-    a += step.a_next;
     to += sizeof(Bits);
   }
 }
@@ -341,60 +365,57 @@ SOFTFOCUS_INLINE std::int32_t clamped_index(std::int32_t index, std::uint32_t co
 
 // a: the index; b: the first register.
 void run_load_indexed(const LaneStep& step, LaneFrame& frame) {
-  const std::byte* a = frame.memory + step.a;
-  const std::byte* from = frame.memory + step.b;
-  std::byte* to = frame.memory + step.to;
-  for (int n = step.vectors; n > 0; --n) {
+  const LaneRange range = range_of(step.vectors, frame);
+  Operand a{frame, step.a, step.a_next, range};
+  const std::byte* from = frame.memory + step.b + range.first_bytes;
+  std::byte* to = results_of(step, frame, range);
+  for (std::uint32_t n = range.count; n > 0; --n) {
     std::int32_t index[kLanes];
     std::uint32_t made[kLanes];
-    std::memcpy(index, a, sizeof index);
+    a.copy_to(index);
     for (int lane = 0; lane < kLanes; ++lane) {
       const auto at = static_cast<std::size_t>(clamped_index(index[lane], step.count));
       std::memcpy(&made[lane], from + at * step.stride + 4 * lane, 4);
     }
     std::memcpy(to, made, sizeof made);
-    a += step.a_next;
     from += sizeof(Bits);
     to += sizeof(Bits);
   }
 }
 // a: the index; b: what is stored where c.
 void run_store_indexed(const LaneStep& step, LaneFrame& frame) {
-  const std::byte* a = frame.memory + step.a;
-  const std::byte* b = frame.memory + step.b;
-  const std::byte* c = frame.memory + step.c;
-  std::byte* to = frame.memory + step.to;
-  for (int n = step.vectors; n > 0; --n) {
+  const LaneRange range = range_of(step.vectors, frame);
+  Operand a{frame, step.a, step.a_next, range}, b{frame, step.b, step.b_next, range};
+  Operand c{frame, step.c, step.c_next, range};
+  std::byte* to = results_of(step, frame, range);
+  for (std::uint32_t n = range.count; n > 0; --n) {
     std::int32_t index[kLanes], mask[kLanes];
     std::uint32_t value[kLanes];
-    std::memcpy(index, a, sizeof index);
-    std::memcpy(value, b, sizeof value);
-    std::memcpy(mask, c, sizeof mask);
+    a.copy_to(index);
+    b.copy_to(value);
+    c.copy_to(mask);
     for (int lane = 0; lane < kLanes; ++lane) {
       if (mask[lane] == 0) continue;
       const auto at = static_cast<std::size_t>(clamped_index(index[lane], step.count));
       std::memcpy(to + at * step.stride + 4 * lane, &value[lane], 4);
     }
-    a += step.a_next;
-    b += step.b_next;
-    c += step.c_next;
     to += sizeof(Bits);
   }
 }
 void run_load_constant(const LaneStep& step, LaneFrame& frame) {
-  const std::byte* a = frame.memory + step.a;
-  std::byte* to = frame.memory + step.to;
+  const LaneRange range = range_of(step.vectors, frame);
+  Operand a{frame, step.a, step.a_next, range};
+  std::byte* to = results_of(step, frame, range);
   const std::uint32_t* table = frame.tables.data() + step.place;
-  for (int n = step.vectors; n > 0; --n) {
+  for (std::uint32_t n = range.count; n > 0; --n) {
     std::int32_t index[kLanes];
     std::uint32_t made[kLanes];
-    std::memcpy(index, a, sizeof index);
+    a.copy_to(index);
     for (int lane = 0; lane < kLanes; ++lane) {
       made[lane] =
           table[static_cast<std::size_t>(clamped_index(index[lane], step.count)) * step.stride];
     }
     std::memcpy(to, made, sizeof made);
-    a += step.a_next;
     to += sizeof(Bits);
   }
 }
@@ -432,14 +453,23 @@ LaneFunction lane_function(std::uint8_t op) {
   }
 }
 
-bool any_lane(const LaneStep& step, const LaneFrame& frame) {
-  const std::byte* a = frame.memory + step.a;
-  Bits joined{};
-  for (int n = step.vectors; n > 0; --n) {
-    joined |= bits_at(a);
-    a += sizeof(Bits);
-  }
-  return any((Mask)as_ints(joined) != 0);
+bool any_lane(const LaneStep& step, LaneFrame& frame) {
+  if (step.a_next == 0) return any((Mask)as_ints(bits_at(frame.memory + step.a)) != 0);
+  // Of whole groups of vectors, which for_each_vector() likes.
+  const std::uint32_t group = frame.range.count % 4 == 0 ? 4 : 1;
+  const std::uint32_t group_bytes = group * static_cast<std::uint32_t>(sizeof(Bits));
+  const auto is_set = [&](std::uint32_t first) {
+    const std::byte* const at = frame.memory + step.a + first;
+    Bits joined = bits_at(at);
+    for (std::uint32_t i = 1; i < group; ++i) joined |= bits_at(at + i * sizeof(Bits));
+    return any((Mask)as_ints(joined) != 0);
+  };
+  std::uint32_t first = frame.range.first_bytes, groups = frame.range.count / group;
+  for (; groups > 0 && !is_set(first); --groups) first += group_bytes;
+  if (groups == 0 || step.count == 0) return groups > 0;
+  while (!is_set(first + (groups - 1) * group_bytes)) --groups;
+  frame.range = {first, groups * group};
+  return true;
 }
 
 template <HalfRounding rounding>

@@ -52,6 +52,12 @@ struct LaneSample {
   std::uint32_t vectors = 0;
 };
 
+/// Vectors of lanes.
+struct LaneRange {
+  std::uint32_t first_bytes = 0;  ///< where the first lies in a register
+  std::uint32_t count = 0;
+};
+
 /// What the steps of one thread work on.
 struct LaneFrame {
   std::byte* memory = nullptr;
@@ -61,7 +67,13 @@ struct LaneFrame {
   const Profile* profile = nullptr;
   std::uint64_t budget = 0;  ///< turns of loops that are left
   bool y_is_up = false;      ///< dFdy is towards the upper row of a block
+  LaneRange range{0, 1};     ///< that steps run over; others have left or wait
 };
+
+/// The vectors that a step runs over, of so many: one if it makes what does not vary.
+inline LaneRange range_of(std::uint32_t vectors, const LaneFrame& frame) {
+  return vectors == 1 ? LaneRange{0, 1} : frame.range;
+}
 
 /// The texture that a sample reads, of its first lane; null if there is none of its shape.
 const ShaderTexture* texture_of(const LaneSample& sample, const LaneFrame& frame);

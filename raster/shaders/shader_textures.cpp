@@ -194,8 +194,10 @@ const ShaderTexture* texture_of(const LaneSample& sample, const LaneFrame& frame
 }
 
 void sample_by_lane(const LaneSample& sample, LaneFrame& frame, int unit_lanes) {
-  const int count = static_cast<int>(sample.vectors) * unit_lanes;
-  for (int lane = 0; lane < count; ++lane) sample_one(sample, Lane{frame, unit_lanes, lane});
+  const LaneRange range = range_of(sample.vectors, frame);
+  const auto first = static_cast<int>(range.first_bytes / sizeof(float));
+  const int end = first + static_cast<int>(range.count) * unit_lanes;
+  for (int lane = first; lane < end; ++lane) sample_one(sample, Lane{frame, unit_lanes, lane});
 }
 
 }  // namespace softfocus

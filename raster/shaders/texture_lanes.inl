@@ -37,6 +37,13 @@ SOFTFOCUS_INLINE Floats floats_of(const LaneSample::At& at, const LaneFrame& fra
   return as_floats(as_bits(numbers_of(at, frame, vector)));
 }
 
+/// The first that a sample is made for, and the end.
+SOFTFOCUS_INLINE std::pair<int, int> vectors_of(const LaneSample& sample, const LaneFrame& frame) {
+  const LaneRange range = range_of(sample.vectors, frame);
+  const auto first = static_cast<int>(range.first_bytes / sizeof(Bits));
+  return {first, first + static_cast<int>(range.count)};
+}
+
 /// Where texelFetch reads a level: texels outside of it are 0.
 struct FetchPlace {
   Ints x, y, slice;
@@ -62,7 +69,8 @@ SOFTFOCUS_INLINE FetchPlace fetch_place(const LaneSample& sample, const Image& l
 void fetch_half_texels(const LaneSample& sample, const Image& level, LaneFrame& frame) {
   const auto stride = static_cast<std::int32_t>(level.stride_bytes / 8);
   const auto* texels = reinterpret_cast<const std::uint16_t*>(level.bytes.data());
-  for (int vector = 0; vector < static_cast<int>(sample.vectors); ++vector) {
+  const auto [begin, end] = vectors_of(sample, frame);
+  for (int vector = begin; vector < end; ++vector) {
     const auto [x, y, slice, inside] = fetch_place(sample, level, 1, frame, vector);
     HalfTexels found;
     const Ints in_row = splat(x[0]) + lane_numbers();
@@ -93,7 +101,8 @@ void fetch_decoded_texels(const LaneSample& sample, const DecodedTexture& textur
   const Image& image = texture.source->levels[level];
   const int slices = slice_count(*texture.source, level);
   const float* texels = texture.texels.data() + texture.starts[level];
-  for (int vector = 0; vector < static_cast<int>(sample.vectors); ++vector) {
+  const auto [begin, end] = vectors_of(sample, frame);
+  for (int vector = begin; vector < end; ++vector) {
     const auto [x, y, slice, inside] = fetch_place(sample, image, slices, frame, vector);
     const Ints at = (((slice * image.height + y) * image.width + x) * 4) & inside;
     for (int channel = 0; channel < 4; ++channel) {
@@ -205,9 +214,9 @@ void sample_texels(const LaneSample& sample, const ShaderTexture& from, LaneFram
   const Image& base = from.texture->levels.front();
   const bool is_flat = sample.sample.shape == TextureShape::flat;
   const int slices = slice_count(*from.texture);
-  const int vectors = static_cast<int>(sample.vectors);
-  for (int first = 0; first < vectors; first += kMostSampled) {
-    const int count = std::min(kMostSampled, vectors - first);
+  auto [first, end] = vectors_of(sample, frame);
+  for (; first < end; first += kMostSampled) {
+    const int count = std::min(kMostSampled, end - first);
     for (int i = 0; i < count; ++i) {
       store(u.data() + i * kLanes, place_of(sample, 0, base.width, frame, first + i));
       store(v.data() + i * kLanes, place_of(sample, 1, base.height, frame, first + i));
