@@ -53,13 +53,14 @@ void ShaderBatches::check_shapes() const {
   }
 }
 
-/// For what filters texels, or fetches others than flat textures' halves: it reads them as floats.
+/// For what filters or gathers texels, or fetches others than flat textures' halves: it reads them
+/// as floats.
 void ShaderBatches::decode_textures() {
   bool filters = false, fetches = false;
   for (const ShaderSampleRegisters& of : program_.samples) {
     const SampleKind kind = of.sample.kind;
     filters = filters || kind == SampleKind::implicit || kind == SampleKind::level ||
-              kind == SampleKind::gradient;
+              kind == SampleKind::gradient || kind == SampleKind::gather;
     fetches = fetches || kind == SampleKind::fetch;
   }
   decoded_.reserve(textures_.size());

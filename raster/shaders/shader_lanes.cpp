@@ -194,6 +194,7 @@ void store_lanes(Isa isa, const float* const* channels, const std::int32_t* kill
 #include "raster/images/sample_lanes.inl"
 #include "raster/lanes/vector_math_lanes.inl"
 
+#include "raster/images/sample_taps.inl"
 #include "raster/images/sliced_lanes.inl"
 #include "raster/shaders/math_lanes.inl"
 #include "raster/shaders/operation_lanes.inl"

@@ -241,6 +241,50 @@ void sample_texels(const LaneSample& sample, const ShaderTexture& from, LaneFram
   }
 }
 
+/// Two neighbouring texels of a side, as gather_texels() has them.
+struct GatheredTexels {
+  Ints first, second;
+};
+
+SOFTFOCUS_INLINE GatheredTexels gathered_texels(const LaneSample& sample, int axis,
+                                                const DecodedAxis& side, Wrap wrap,
+                                                const LaneFrame& frame, int vector) {
+  const Floats size = splat(side.sizes[0]);
+  const Floats at = place_of(sample, axis, static_cast<int>(side.sizes[0]), frame, vector);
+  const Floats finite = select(absolute(at) < __builtin_inff(), at, splat(0.0f));
+  const Floats texels = smaller(larger(finite * size - 0.5f, splat(-0x1p22f)), splat(0x1p22f));
+  GatheredTexels found;
+  wrap_standard({side, wrap, at, splat(0), size}, floor(texels), found.first, found.second);
+  return found;
+}
+
+/// gather_texels() in lanes.
+void gather_decoded_texels(const LaneSample& sample, const ShaderTexture& from, LaneFrame& frame) {
+  const DecodedTexture& texture = *from.decoded;
+  const std::int32_t width = texture.source->levels.front().width;
+  const bool compares = sample.compared.is_there;
+  const float* texels =
+      texture.texels.data() + texture.starts[0] + (compares ? 0 : sample.sample.channel);
+  const auto [begin, end] = vectors_of(sample, frame);
+  for (int vector = begin; vector < end; ++vector) {
+    const auto x = gathered_texels(sample, 0, texture.u, from.sampler.wrap_u, frame, vector);
+    const auto y = gathered_texels(sample, 1, texture.v, from.sampler.wrap_v, frame, vector);
+    const Ints upper = y.first * width, lower = y.second * width;
+    const Floats given = floats_of(sample.compared, frame, vector);
+    const auto put = [&](int channel, Ints at) {
+      Floats found = gather(texels, at * 4, (Mask)splat(-1));
+      if (compares) {
+        found = select(comparison(from.compare, given, found), splat(1.0f), splat(0.0f));
+      }
+      put_result(sample, channel, frame, vector, as_bits(found));
+    };
+    put(0, lower + x.first);
+    put(1, lower + x.second);
+    put(2, upper + x.second);
+    put(3, upper + x.first);
+  }
+}
+
 /// A texelFetch in lanes, of a level that all have; whether there is such a way.
 SOFTFOCUS_INLINE bool fetch_texels(const LaneSample& sample, const ShaderTexture& from,
                                    LaneFrame& frame) {
@@ -269,6 +313,11 @@ void run_sample(const LaneStep& step, LaneFrame& frame) {
   const bool filters = of.kind == SampleKind::implicit || of.kind == SampleKind::level ||
                        of.kind == SampleKind::gradient;
   if (filters && from->decoded != nullptr) return sample_texels(sample, *from, frame);
+  const bool gathers = of.kind == SampleKind::gather && of.shape == TextureShape::flat;
+  if (gathers && from->decoded != nullptr && !from->decoded->are_whole &&
+      !from->decoded->texels.empty()) {
+    return gather_decoded_texels(sample, *from, frame);
+  }
   sample_by_lane(sample, frame, kLanes);
 }
 

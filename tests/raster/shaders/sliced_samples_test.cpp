@@ -77,6 +77,13 @@ void check_slices(const UserShader& shader, const ShaderTexture& texture,
   }
 }
 
+int wrapped_index(int i, int size, Wrap wrap) {
+  if (wrap == Wrap::clamp_to_edge) return std::clamp(i, 0, size - 1);
+  const int period = wrap == Wrap::repeat ? size : 2 * size;
+  const int rest = (i % period + period) % period;
+  return rest < size ? rest : period - 1 - rest;
+}
+
 std::string refusal_of(const std::string& declared, const std::string& body) {
   try {
     const UserShader shader = slices_shader(declared, body);
@@ -334,6 +341,57 @@ TEST_CASE("a sampler1DArray reads the middle of a sampler2DArray's rows") {
     for (const Isa isa : available_isas()) {
       const Image expected = drawn_slices(layer, bound, isa);
       CHECK(first_difference(drawn_slices(line, bound, isa), expected) == "");
+    }
+  }
+}
+
+TEST_CASE("textureGather reads the four texels round a place, by every wrap and of every format") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const UserShader channel =
+      slices_shader("sampler2D",
+                    "vec2 at = uv * 7.3 - 3.1;\nif (uv.x > 0.95) at *= 1e30;\n"
+                    "if (uv.x < 0.03) at = vec2(0.0) / 0.0;\nresult = textureGather(t, at, 1);");
+  const UserShader shadow =
+      slices_shader("sampler2DShadow", "result = textureGather(t, uv * 7.3 - 3.1, 0.5);");
+  Random random{9};
+  for (const auto& [width, height] : {std::pair{8, 4}, {7, 5}, {1, 1}}) {
+    for (const Format format : {Format::rgba8, Format::srgb8, Format::rgba16f, Format::rgba32f}) {
+      Image image = make_image(format, width, height);
+      for (int i = 0; i < width * height; ++i) {
+        const auto number = [&] { return random.between(0.0f, 1.0f); };
+        store_texel(image, i % width, i / width, {number(), number(), number(), number()}, {});
+      }
+      const Texture texture = make_texture(image);
+      for (const Wrap wrap : {Wrap::repeat, Wrap::clamp_to_edge, Wrap::mirrored_repeat}) {
+        const auto texel = [&](float u, float v, int right, int lower) {
+          const auto first = [](float at, int size) {
+            if (!std::isfinite(at)) at = 0.0f;
+            const float texels = at * static_cast<float>(size) - 0.5f;
+            return static_cast<int>(std::floor(std::clamp(texels, -0x1p22f, 0x1p22f)));
+          };
+          return fetch_texel(image, wrapped_index(first(u, width) + right, width, wrap),
+                             wrapped_index(first(v, height) + lower, height, wrap), {});
+        };
+        const auto gathered = [&](float u, float v, const auto& number) {
+          return glm::vec4{number(texel(u, v, 0, 1)), number(texel(u, v, 1, 1)),
+                           number(texel(u, v, 1, 0)), number(texel(u, v, 0, 0))};
+        };
+        const ShaderTexture bound{.texture = &texture,
+                                  .sampler = {.wrap_u = wrap, .wrap_v = wrap},
+                                  .compare = Compare::greater};
+        check_slices(channel, bound, [&](int x, int y) {
+          const glm::vec2 uv = uv_of(x, y);
+          glm::vec2 at{uv.x * 7.3f - 3.1f, uv.y * 7.3f - 3.1f};
+          if (uv.x > 0.95f) at *= 1e30f;
+          if (uv.x < 0.03f) at = glm::vec2{0.0f};
+          return gathered(at.x, at.y, [](const glm::vec4& of) { return of.y; });
+        });
+        check_slices(shadow, bound, [&](int x, int y) {
+          const glm::vec2 uv = uv_of(x, y);
+          return gathered(uv.x * 7.3f - 3.1f, uv.y * 7.3f - 3.1f,
+                          [](const glm::vec4& of) { return 0.5f > of.x ? 1.0f : 0.0f; });
+        });
+      }
     }
   }
 }
