@@ -68,6 +68,11 @@ OpenedShader open_shader(const std::filesystem::path& file, const ShaderReading&
   check_no_pipe(file);
   std::string bytes = read_file_bytes(file, kMostShaderBytes);
   if (!is_spirv(bytes)) return open_shader_text(file.string(), std::move(bytes), reading);
+  if (!reading.defines.empty() || !reading.include_folders.empty()) {
+    throw ShaderError(file.string() +
+                      ": it is SPIR-V, which is compiled already; macros and include folders are "
+                      "for GLSL and HLSL");
+  }
   OpenedShader opened;
   opened.words = spirv_words(std::as_bytes(std::span{bytes}));
   opened.files.push_back(file.string());

@@ -94,6 +94,9 @@ TEST_CASE("apply --shader: macros by --define") {
                 {"apply", all.picture, "--effect", "bloom", "--define", "RED", "-o",
                  all.directory.file("none.npy")},
                 2, {"--define and --include are of --shader"});
+  check_refused(all.directory,
+                all.apply(SOFTFOCUS_TEST_DATA "/wgsl.spv", "none.npy", {"--define", "RED"}), 1,
+                {"wgsl.spv: it is SPIR-V", "for GLSL and HLSL"});
 }
 
 TEST_CASE("apply --shader: the same bits on every unit, and by threads") {
