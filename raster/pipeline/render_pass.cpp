@@ -115,15 +115,17 @@ class TileDrawing {
     has_begun_ = true;
     if (!memory_) memory_.reset(new VisibilityTile);  // not zeroed: begin_tile() fills it
     begin_tile(*memory_, area_, pass_.targets, is_cleared_ ? std::nullopt : pass_.clear_depth);
+    if (texels_ != nullptr) {
+      memory_->front.texels = texels_;
+      memory_->front.stride_bytes =
+          kTexelBytes * static_cast<std::size_t>(area_.x_end - area_.x_begin);
+      return;
+    }
     for (std::size_t i = 0; i < memory_->layers; ++i) {
       Image& target = *layer_target(pass_.targets, i).colour;
       memory_->layer(i).texels = first_texel(target, area_);
       memory_->layer(i).stride_bytes = target.stride_bytes;
     }
-    if (texels_ == nullptr) return;
-    memory_->front.texels = texels_;
-    memory_->front.stride_bytes =
-        kTexelBytes * static_cast<std::size_t>(area_.x_end - area_.x_begin);
   }
 
   void shade() {
@@ -188,16 +190,26 @@ void draw_tile_aside(const RenderPass& pass, const TileLists& lists, int tile, T
                      std::byte* texels) {
   assert(pass.clear_colour && pass.clear_depth && !has_layers(pass.targets));
   const std::span<const TileWork> work = work_of_tile(lists, tile);
+  const Rectangle area = tile_area(lists, tile);
+  const int width = area.x_end - area.x_begin, height = area.y_end - area.y_begin;
+  if (work.empty()) {
+    const ImageView to = view_of(Format::rgba16f, texels, width, height);
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        store_texel<Format::rgba16f>(to, x, y, *pass.clear_colour, pass.profile);
+      }
+    }
+    return;
+  }
   const bool in_lanes = std::all_of(work.begin(), work.end(), [](const TileWork& item) {
     return item.draw->lane_steps != nullptr;
   });
-  if (in_lanes && !work.empty()) {
+  if (in_lanes) {
     draw_tile(pass, lists, tile, memory, texels);
     return;
   }
   draw_tile(pass, lists, tile, memory);
-  const Rectangle area = tile_area(lists, tile);
-  const std::size_t row_bytes = kTexelBytes * static_cast<std::size_t>(area.x_end - area.x_begin);
+  const std::size_t row_bytes = kTexelBytes * static_cast<std::size_t>(width);
   const Image& target = *pass.targets.colour[0];
   const std::byte* from = first_texel(target, area);
   for (int y = area.y_begin; y < area.y_end; ++y) {

@@ -89,7 +89,9 @@ using TileMemory = std::unique_ptr<VisibilityTile>;
 void draw_tile(const RenderPass& pass, const TileLists& lists, int tile, TileMemory& memory);
 
 /// Draws one tile to `texels`, as RGBA16F in rows without gaps. The targets' own tile holds
-/// anything afterwards. Needs one colour target, a depth buffer, and both cleared.
+/// anything afterwards; it is not touched if all draws are in lanes and depths are not kept, and
+/// then the targets may be without texels. Needs one colour target, a depth buffer, and both
+/// cleared.
 void draw_tile_aside(const RenderPass& pass, const TileLists& lists, int tile, TileMemory& memory,
                      std::byte* texels);
 

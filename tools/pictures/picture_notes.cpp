@@ -193,6 +193,11 @@ bool is_free_for_sidecar(const std::filesystem::path& sidecar) {
   return text && parse_notes(*text);
 }
 
+std::string busy_sidecar_warning(const std::filesystem::path& sidecar) {
+  return "'" + sidecar.string() +
+         "' is no sidecar of a picture and stays as it is: the picture's lens is written nowhere";
+}
+
 FoundNotes find_notes(const std::filesystem::path& picture, const ByteSource& bytes) {
   Bytes buffer;
   const std::span start =

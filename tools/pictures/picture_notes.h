@@ -67,6 +67,9 @@ std::string sidecar_text(const PictureNotes& notes, const ByteSource& picture);
 /// Whether a sidecar can stand there: there is nothing, or one that may be replaced.
 bool is_free_for_sidecar(const std::filesystem::path& sidecar);
 
+/// What is said if it cannot.
+std::string busy_sidecar_warning(const std::filesystem::path& sidecar);
+
 /// The notes that belong to a picture, and where they stand.
 struct FoundNotes {
   std::optional<PictureNotes> notes;

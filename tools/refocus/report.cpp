@@ -251,11 +251,6 @@ void tell(const RefocusOptions& options, const PictureSources& sources, const Re
   made.json = refocus_json(options, sources, depth, used, hash);
 }
 
-std::string busy_sidecar_warning(const std::filesystem::path& sidecar) {
-  return "'" + sidecar.string() +
-         "' is no sidecar of a picture and stays as it is: the picture's lens is written nowhere";
-}
-
 std::string cut_light_warning(const std::string& colour, std::size_t cut, int light_power) {
   const std::string most = short_number(std::ldexp(65504.0, light_power));
   return "'" + colour + "': colours beyond " + most + " or infinite are cut to that, in " +

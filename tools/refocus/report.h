@@ -35,7 +35,6 @@ PictureNotes refocus_notes(const RefocusOptions& options, const UsedRefocus& use
 void tell(const RefocusOptions& options, const PictureSources& sources, const ReadDepth& depth,
           const UsedRefocus& used, std::uint64_t hash, Refocused& made);
 
-std::string busy_sidecar_warning(const std::filesystem::path& sidecar);
 std::string cut_light_warning(const std::string& colour, std::size_t cut, int light_power);
 /// Empty if the format keeps the file's profile, or there is none.
 std::string lost_profile_warning(const PictureFile& file, FileFormat format);

@@ -14,6 +14,7 @@
 #include "scenes/draw/shadowed_layers.h"
 #include "scenes/draw/transparent_layers.h"
 #include "scenes/frame/frame.h"
+#include "scenes/frame/frame_rows.h"
 #include "scenes/load/load_scene.h"
 #include "scenes/scene.h"
 #include "tools/cli/commands.h"
@@ -25,6 +26,7 @@
 #include "tools/render/options.h"
 #include "tools/render/performance_report.h"
 #include "tools/render/picture_files.h"
+#include "tools/render/render_by_rows.h"
 #include "tools/render/render_frames.h"
 #include "tools/render/shard_file.h"
 
@@ -175,7 +177,8 @@ Frame watched_frame(const Shot& shot, const RenderOptions& options, RenderRecord
   hooks.on_drawn = [&](const DrawnFrame& drawn, const std::optional<UsedLens>& lens) {
     watch.stop();
     if (lens && cuts_by_default(options)) {
-      warnings.push_back(cut_warning(drawn.parts.picture(), options, *lens, pool));
+      warnings.push_back(
+          cut_warning(cut_circles(drawn.parts.picture(), *lens, pool), options, *lens));
     }
     warnings.push_back(transparent_warning(*shot.scene, drawn.parts, options));
   };
@@ -231,9 +234,7 @@ Rendered write_frame(const RenderOptions& options, RenderRecord& record,
   const Image& picture = record.frame.picture;
   auto sidecar = sidecar_place(options);
   if (sidecar && !is_free_for_sidecar(*sidecar)) {
-    warnings.push_back("'" + sidecar->string() +
-                       "' is no sidecar of a picture and stays as it is: the picture's lens is "
-                       "written nowhere");
+    warnings.push_back(busy_sidecar_warning(*sidecar));
     sidecar.reset();
   }
   Rendered made;
@@ -270,6 +271,24 @@ Rendered make_rendered(const RenderOptions& options, const Scene& scene, double 
                       .effects = shot.effects,
                       .ms = {.load = load_ms}};
   std::vector<std::string> warnings;
+  const auto warn_of_frame = [&] {
+    warnings.insert(warnings.end(), {until_warning(record), goal_warning(options, record),
+                                     order_warning(record.effects)});
+    if (options.show == Show::image) {
+      warnings.push_back(shutter_warning(scene, options.method, record.effects));
+    }
+    std::erase(warnings, "");
+  };
+  if (may_render_by_rows(options)) {
+    if (why_whole(shot, pool.isa()).empty()) {
+      render_by_rows(options, shot, record, warnings, progress, pool);
+      warn_of_frame();
+      return {.warnings = std::move(warnings),
+              .report = text_report(options, record),
+              .json = json_report(options, record)};
+    }
+    check_whole_memory(options);
+  }
   record.frame = watched_frame(shot, options, record, warnings, progress, pool);
   record.camera.position = record.frame.view.eye;
   progress.clear();
@@ -278,11 +297,7 @@ Rendered make_rendered(const RenderOptions& options, const Scene& scene, double 
     std::erase(warnings, "");
     return {.warnings = std::move(warnings)};
   }
-  warnings.insert(warnings.end(), {until_warning(record), goal_warning(options, record),
-                                   order_warning(record.effects)});
-  if (options.show == Show::image) {
-    warnings.push_back(shutter_warning(scene, options.method, record.effects));
-  }
+  warn_of_frame();
   return write_frame(options, record, std::move(warnings), progress, pool);
 }
 

@@ -16,6 +16,7 @@
 #include "tools/options/parameter_options.h"
 #include "tools/options/run_options.h"
 #include "tools/render/picture_files.h"
+#include "tools/render/render_by_rows.h"
 #include "tools/render/shard_file.h"
 
 namespace softfocus {
@@ -383,6 +384,10 @@ void complete(RenderOptions& options, const CLI::App& parser) {
     throw UsageError(
         "--effect and --shard exclude each other; softfocus apply puts effects on what join gives");
   }
+  if (!may_render_by_rows(options)) check_whole_memory(options);
+}
+
+void check_whole_memory(const RenderOptions& options) {
   check_render_memory(options, bytes_per_pixel(options));
 }
 

@@ -88,6 +88,10 @@ void complete(RenderOptions& options, const CLI::App& parser);
 /// UsageError for too many lights, and for a way to draw that has no shadows.
 void settle_shadows(const RenderOptions& options, Scene& scene);
 
+/// Throws UsageError if there is not the memory for the whole picture. complete() leaves it to
+/// callers if the picture may be made by rows.
+void check_whole_memory(const RenderOptions& options);
+
 /// Throws UsageError if there is not the memory for a scene with transparent surfaces.
 void check_transparent_memory(const RenderOptions& options);
 

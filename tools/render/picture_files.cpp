@@ -136,10 +136,13 @@ bool takes_all_circles(const RenderOptions& options) {
   return options.show == Show::image && options.method.takes_any_radius() && !options.max_coc_px;
 }
 
-std::string cut_warning(const Image& drawn, const RenderOptions& options, const UsedLens& used,
-                        ThreadPool& pool) {
+CircleSizes cut_circles(const ConstImageView& drawn, const UsedLens& used, ThreadPool& pool) {
+  return circle_sizes(drawn, used.settings.coc, noticeable_px(used.settings.max_coc_px), pool);
+}
+
+std::string cut_warning(const CircleSizes& sizes, const RenderOptions& options,
+                        const UsedLens& used) {
   const float max_coc_px = used.settings.max_coc_px;
-  const CircleSizes sizes = circle_sizes(drawn, used.settings.coc, noticeable_px(max_coc_px), pool);
   if (sizes.beyond_limit < kNoticeableShare) return {};
   const float most = most_max_coc_px(options.arithmetic);
   const auto scale = static_cast<float>(options.supersample);

@@ -37,8 +37,11 @@ bool cuts_by_default(const RenderOptions& options);
 /// Whether the largest circle is the picture's own, as the method takes no longer for it.
 bool takes_all_circles(const RenderOptions& options);
 
-/// The circles that are cut so far that it can be seen, as a line, or nothing.
-std::string cut_warning(const Image& drawn, const RenderOptions& options, const UsedLens& used,
-                        ThreadPool& pool);
+/// The circles of what was drawn; those beyond the limit are cut so far that it can be seen.
+CircleSizes cut_circles(const ConstImageView& drawn, const UsedLens& used, ThreadPool& pool);
+
+/// Them as a line, or nothing.
+std::string cut_warning(const CircleSizes& sizes, const RenderOptions& options,
+                        const UsedLens& used);
 
 }  // namespace softfocus

@@ -247,7 +247,8 @@ class Run {
   }
 
   void say(const FrameWork& frame, const FrameRun& run) {
-    if (!std::exchange(has_note_, true) && !run.note.empty() && !options_.quiet) {
+    if (!has_note_ && !run.note.empty() && !options_.quiet) {
+      has_note_ = true;
       tell("frame " + std::to_string(frame.number) + ": " + run.note);
     }
     for (const std::string& warning : run.warnings) {

@@ -36,6 +36,27 @@ TEST_CASE("render: the bytes are the same for 1, 2, 3 and 8 threads" *
   for (const std::string threads : {"2", "3", "8"}) CHECK(with_threads(threads) == one);
 }
 
+TEST_CASE("render: a large picture is made by rows, with the whole one's bytes and words") {
+  const TemporaryDirectory directory;
+  const std::string rows = directory.file("rows.npy"), whole = directory.file("whole.npy");
+  const auto large = [](const std::string& output, const Words& more) {
+    Words words{"render", "figures",   "--size", "16384x1024", "--method", "two-pass",
+                "--json", "--max-coc", "2",      "-o",         output};
+    words.insert(words.end(), more.begin(), more.end());
+    const ProgramRun run = run_program(words);
+    CHECK(run.status == 0);
+    return run;
+  };
+  const ProgramRun by_rows = large(rows, {});
+  const ProgramRun at_once = large(whole, {"--depth-output", directory.file("depth.pfm")});
+  CHECK(read_file(rows) == read_file(whole));
+  CHECK(by_rows.err == at_once.err);
+  CHECK(json::parse(by_rows.out)["picture_hash"] == json::parse(at_once.out)["picture_hash"]);
+  CHECK(json::parse(read_file(rows + ".json"))["picture_hash"] ==
+        json::parse(read_file(whole + ".json"))["picture_hash"]);
+  CHECK(by_rows.peak_kib < at_once.peak_kib);
+}
+
 TEST_CASE("render: a method that reads object numbers gets those of the scene's objects") {
   const Scene scene = load_scene("near-fence", scene_search_path({}));
   const CameraMatrices view = camera_matrices(scene.camera, 0, kWidth, kHeight);

@@ -1,0 +1,152 @@
+#include "scenes/frame/frame_rows.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstring>
+#include <deque>
+#include <utility>
+#include <vector>
+
+#include "dof/two_pass/two_pass_stream.h"
+#include "raster/threads/loops.h"
+#include "scenes/draw/shadowed_layers.h"
+
+namespace softfocus {
+namespace {
+
+/// Of a size and format, without texels.
+Image without_texels(Format format, int width, int height) {
+  Image image;
+  image.format = format;
+  image.width = width;
+  image.height = height;
+  return image;
+}
+
+bool is_two_pass(const Shot& shot) {
+  return shot.show == Show::image && shot.method.name() == "two-pass";
+}
+
+}  // namespace
+
+std::string why_whole(const Shot& shot, Isa isa) {
+  const Scene& scene = *shot.scene;
+  const bool is_sharp =
+      shot.show == Show::pinhole || (shot.show == Show::image && shot.method.name() == "pinhole");
+  if (!is_two_pass(shot) && !is_sharp) return "only two-pass and pinhole work by rows";
+  if (shot.arithmetic != Arithmetic::floats) return "--arithmetic has no other form";
+  if (shot.supersample != 1) return "--supersample halves it";
+  if (!shot.effects.empty()) return "effects are of the whole picture";
+  if (shot.layers.value_or(1) > 1) return "layers are drawn together";
+  if (shot.lens && (shot.lens->focus_at || !shot.lens->sharp_depths.empty())) {
+    return "the focus is looked for in it";
+  }
+  if (shot.lens && shot.lens->cuts_no_circle) return "its largest circle is looked for";
+  if (has_transparent(scene)) return "the scene has transparent surfaces";
+  if (has_shadows(scene)) return "the scene has shadows";
+  const bool has_shaders =
+      std::any_of(scene.materials.begin(), scene.materials.end(),
+                  [](const Material& material) { return material.shaders != nullptr; });
+  if (has_shaders) return "materials have shaders";
+  const bool in_lanes = isa != Isa::scalar && shot.profile.coverage == Coverage::edge_functions &&
+                        shot.profile.attributes != AttributeSetup::planes_by_quad;
+  return in_lanes ? "" : "it is not drawn in lanes";
+}
+
+struct FrameRows::State {
+  const Shot& shot;
+  ThreadPool& pool;
+  Frame frame{};
+  PreparedScene prepared;
+  Image picture, depth;  ///< of the frame's size, without texels
+  TileLists tiles{};
+  std::optional<TwoPassStream> stream{};
+  Image drawn{};  ///< a row of tiles
+  int next_tile_row = 0;
+  std::deque<std::vector<std::uint16_t>> finished{};
+
+  State(const Shot& of, ThreadPool& with)
+      : shot(of),
+        pool(with),
+        prepared(prepare_scene(*of.scene, of.profile, with)),
+        picture(without_texels(Format::rgba16f, of.width, of.height)),
+        depth(without_texels(Format::r32f, of.width, of.height)) {
+    DrawnFrame as_drawn{
+        .view = camera_matrices(shot.scene->camera, shot.frame, shot.width, shot.height)};
+    as_drawn.parts.opaque = without_texels(Format::rgba16f, shot.width, shot.height);
+    frame.view = as_drawn.view;
+    frame.method = shot.method;
+    frame.sampling = shot.sampling;
+    frame.lens = focused_lens(shot, as_drawn, pool);
+    RenderPass& pass = prepared.pass;
+    pass.targets.colour[0] = &picture;
+    pass.targets.depth = &depth;
+    record_scene(prepared, frame.view, shot.frame, pass);
+    sort_into_tiles({&pass, 1}, {&tiles, 1}, pool);
+    if (is_two_pass(shot)) {
+      stream.emplace(shot.width, frame.lens->settings, shot.profile, pool.isa());
+    }
+  }
+
+  bool is_drawn() const { return next_tile_row * tiles.tiles_x >= tile_count(tiles); }
+
+  /// The next row of tiles, into `drawn`.
+  void draw_band() {
+    const int first = next_tile_row++ * tiles.tiles_x;
+    const Rectangle corner = tile_area(tiles, first);
+    const int rows = corner.y_end - corner.y_begin;
+    if (drawn.height != rows) drawn = make_image(Format::rgba16f, shot.width, rows);
+    struct Scratch {
+      TileMemory memory{};
+      std::vector<std::byte> texels{};
+    };
+    for_each_with<Scratch>(pool, tiles.tiles_x, [&](int i, Scratch& scratch) {
+      const Rectangle area = tile_area(tiles, first + i);
+      const std::size_t row_bytes = 8 * static_cast<std::size_t>(area.x_end - area.x_begin);
+      scratch.texels.resize(row_bytes * static_cast<std::size_t>(rows));
+      draw_tile_aside(prepared.pass, tiles, first + i, scratch.memory, scratch.texels.data());
+      for (int y = 0; y < rows; ++y) {
+        std::memcpy(row<std::uint16_t>(drawn, y).data() + 4 * area.x_begin,
+                    scratch.texels.data() + static_cast<std::size_t>(y) * row_bytes, row_bytes);
+      }
+    });
+  }
+
+  /// Draws a band, or ends the picture.
+  void go_on(const FrameBandSink& on_drawn) {
+    const RowSink keep = [&](std::span<const std::uint16_t> of) {
+      finished.emplace_back(of.begin(), of.end());
+    };
+    if (is_drawn()) {
+      assert(stream);
+      return end_rows(*stream, pool, keep);
+    }
+    draw_band();
+    if (on_drawn) on_drawn(drawn);
+    for (int y = 0; y < drawn.height; ++y) {
+      const std::span<const std::uint16_t> next = row<std::uint16_t>(std::as_const(drawn), y);
+      stream ? put_row(*stream, next, pool, keep) : keep(next);
+    }
+  }
+};
+
+FrameRows::FrameRows(const Shot& shot, ThreadPool& pool)
+    : state_(std::make_unique<State>(shot, pool)) {}
+FrameRows::~FrameRows() = default;
+
+const Frame& FrameRows::frame() const { return state_->frame; }
+
+void FrameRows::make(int count, Image& to, const FrameBandSink& on_drawn) {
+  State& state = *state_;
+  if (to.width != state.shot.width || to.height != count) {
+    to = make_image(Format::rgba16f, state.shot.width, count);
+  }
+  while (state.finished.size() < static_cast<std::size_t>(count)) state.go_on(on_drawn);
+  for (int y = 0; y < count; ++y) {
+    std::copy(state.finished.front().begin(), state.finished.front().end(),
+              row<std::uint16_t>(to, y).begin());
+    state.finished.pop_front();
+  }
+}
+
+}  // namespace softfocus
