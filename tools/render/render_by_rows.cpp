@@ -19,7 +19,7 @@ namespace softfocus {
 namespace {
 
 /// From so many pixels on memory counts more than a few per cent of time.
-constexpr std::int64_t kLargePixels = std::int64_t{1} << 24;
+constexpr std::int64_t kLargePixels = std::int64_t{1} << 22;
 
 /// The circles that are cut, of bands.
 class CutCircles {
