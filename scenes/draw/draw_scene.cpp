@@ -192,6 +192,12 @@ std::size_t chunks_of_mesh(const Mesh& mesh) {
 
 }  // namespace
 
+std::size_t chunks_of_scene(const Scene& scene) {
+  std::size_t chunks = 0;
+  for (const Object& object : scene.objects) chunks += chunks_of_mesh(scene.meshes[object.mesh]);
+  return chunks;
+}
+
 glm::vec4 clear_colour(const Scene& scene) {
   return {scene.background, alpha_depth(static_cast<float>(scene.camera.far_m))};
 }
@@ -350,12 +356,6 @@ void blend_transparent(PreparedScene& prepared, const CameraMatrices& camera, do
                                prepared.pass.profile, pool.isa(),
                                reinterpret_cast<std::byte*>(texels), picture.stride_bytes);
       });
-}
-
-std::size_t chunks_of_scene(const Scene& scene) {
-  std::size_t chunks = 0;
-  for (const Object& object : scene.objects) chunks += chunks_of_mesh(scene.meshes[object.mesh]);
-  return chunks;
 }
 
 // A scene of any number of objects, in passes on the same targets: the same bits.

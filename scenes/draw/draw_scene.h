@@ -84,6 +84,8 @@ struct PreparedScene {
 /// pass keeps its triangles, here a million and a half, until its tiles are drawn.
 constexpr std::size_t kPassChunks = 1536;
 
+std::size_t chunks_of_scene(const Scene& scene);
+
 /// The scene must outlive the result. `pool` is the one that will draw.
 PreparedScene prepare_scene(const Scene& scene, const Profile& profile, ThreadPool& pool);
 

@@ -48,6 +48,7 @@ std::string why_whole(const Shot& shot, Isa isa) {
       std::any_of(scene.materials.begin(), scene.materials.end(),
                   [](const Material& material) { return material.shaders != nullptr; });
   if (has_shaders) return "materials have shaders";
+  if (chunks_of_scene(scene) > kPassChunks) return "the scene is drawn in several passes";
   const bool in_lanes = isa != Isa::scalar && shot.profile.coverage == Coverage::edge_functions &&
                         shot.profile.attributes != AttributeSetup::planes_by_quad;
   return in_lanes ? "" : "it is not drawn in lanes";
