@@ -59,6 +59,9 @@ GlslConvention convention_of(const char* name) {
 std::vector<std::uint32_t> words_of(const softfocus_shader_source& source) {
   if (source.words != nullptr) {
     if (source.text != nullptr) refuse("source", "it has both text and words");
+    if (source.define_count > 0 || source.read_include != nullptr) {
+      refuse("source", "words are compiled already; macros and includes are for text");
+    }
     if (source.word_count > kMostSpirvWords) {
       refuse("source.word_count", std::to_string(source.word_count) + " is more than " +
                                       std::to_string(kMostSpirvWords));

@@ -198,8 +198,9 @@ typedef struct softfocus_shader_source {
                              recognised by the text */
   const char* const* defines; /* macros, "NAME" or "NAME=VALUE" */
   size_t define_count;
-  /* The text of a file that #include names, by its path from `name`'s folder; null: there is none.
-   * It is copied before the next call. May be null: then nothing is included. */
+  /* The text of a file that #include names; null: there is none. `path` begins with `name`'s
+   * folder, if that has one. The text is copied before the next call, and the callback must not
+   * use the context. May be null: then nothing is included. */
   const char* (*read_include)(void* user, const char* path);
   void* user;
 } softfocus_shader_source;

@@ -141,6 +141,7 @@ class Emitter {
 
   void run() {
     give_indexed(tree_.main);
+    if (tree_.has_derivatives) begin_variables();
     region(tree_.main, {});
     put_step(number_of(StepOp::end));
     for (const ShaderOutput& output : tree_.outputs) {
@@ -429,6 +430,33 @@ class Emitter {
     for (std::size_t i = 0; i < 4; ++i) made.to[i] = of(sample.to[i]);
     put_step(number_of(ShaderOp::sample)).place = static_cast<std::uint32_t>(to_.samples.size());
     to_.samples.push_back(made);
+  }
+
+  // --- what differences see in lanes that were never there ---
+
+  /// A variable that the shader does not begin with a store by all lanes is 0 before: a block's
+  /// other pixels may be asked for it, and would have what the batch before left.
+  void begin_variables() {
+    std::vector<bool> is_known(tree_.variable_count);
+    begin_variables(tree_.main, is_known);
+  }
+  void begin_variables(const ShaderRegion& all, std::vector<bool>& is_known) {
+    for (std::size_t at = 0; at < all.size(); ++at) {
+      const ShaderInstruction& in = all[at].instruction;
+      const bool is_access =
+          all[at].kind == instruction && (in.op == ShaderOp::load || in.op == ShaderOp::store);
+      if (is_access && !is_known[in.place]) {
+        is_known[in.place] = true;
+        const bool is_begun =
+            in.op == ShaderOp::store && (&all == &tree_.main || is_local(all, at));
+        if (!is_begun && varying_.variables[in.place]) {
+          put_step(number_of(ShaderOp::copy), of_variable(in.place), constant(0));
+        }
+      }
+      for (const auto* side : {&all[at].first, &all[at].second}) {
+        if (*side) begin_variables(**side, is_known);
+      }
+    }
   }
 
   // --- stores that no other lane minds ---

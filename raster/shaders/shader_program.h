@@ -18,7 +18,8 @@ enum class StepOp : std::uint8_t {
   masked_copy,                                              ///< where b: a
   multiply_add,                                             ///< a b + c, each rounded
   jump,                                                     ///< to `place`
-  jump_if_none,   ///< if no lane of a is set; with a count, steps run from the first to the last
+  jump_if_none,   ///< if no lane of a is set; with a count, steps run from now on over the vectors
+                  ///< from the first that has one to the last, in groups of four
   jump_if_false,  ///< a does not vary
   check_budget,   ///< each time a loop begins anew
   keep_range,     ///< of lanes that steps run over, in `to`, which does not vary

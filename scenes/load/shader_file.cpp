@@ -68,7 +68,8 @@ OpenedShader open_shader(const std::filesystem::path& file, const ShaderReading&
   check_no_pipe(file);
   std::string bytes = read_file_bytes(file, kMostShaderBytes);
   if (!is_spirv(bytes)) return open_shader_text(file.string(), std::move(bytes), reading);
-  if (!reading.defines.empty() || !reading.include_folders.empty()) {
+  const bool has_more = !reading.defines.empty() || !reading.include_folders.empty();
+  if (has_more && !reading.is_of_several) {
     throw ShaderError(file.string() +
                       ": it is SPIR-V, which is compiled already; macros and include folders are "
                       "for GLSL and HLSL");

@@ -35,6 +35,7 @@ struct ShaderReading {
   GlslConvention convention = GlslConvention::recognised;
   std::map<std::string, std::string> defines{};
   std::vector<std::string> include_folders{};  ///< as GlslSource has them
+  bool is_of_several = false;  ///< files: SPIR-V is not refused for macros that others take
 };
 
 struct Section;

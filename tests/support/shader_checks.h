@@ -132,7 +132,10 @@ inline CheckResult check_shader(const std::vector<std::uint32_t>& words, std::ui
             clear_image(found, kBeforeShader, {});
             const ImageView view = found;
             const ShaderPass pass{.textures = textures, .targets = {&view, 1}, .lanes = lanes};
-            run_shader(is_plain ? plain : threads == 1 ? simplified : of_places, pass, pool);
+            run_shader(is_plain                          ? plain
+                       : (threads == 1) == (lanes < 128) ? simplified
+                                                         : of_places,
+                       pass, pool);
             const std::string difference = first_difference(found, expected.image);
             if (difference.empty()) continue;
             return {.difference = std::string{is_plain ? "not simplified, " : ""} +

@@ -213,7 +213,8 @@ Image with_shaders(const ShaderOptions& options, Image picture, const Profile& p
     OpenedShader opened =
         open_shader(file, {.convention = options.convention.value_or(GlslConvention::recognised),
                            .defines = options.defines,
-                           .include_folders = options.include_folders});
+                           .include_folders = options.include_folders,
+                           .is_of_several = options.files.size() > 1});
     for (const std::string& warning : opened.warnings) warn(warning);
     all.push_back(
         {make_shader(std::move(opened.words)), opened.convention, std::move(opened.parameters)});

@@ -217,6 +217,11 @@ TEST_CASE("the C interface: macros, and files that a callback reads") {
   CHECK(message(source) == "source.defines: a null pointer");
   source.defines = nullptr;
   CHECK(message(source) == "source.defines: a null pointer");
+  const std::uint32_t word = 0x07230203;
+  source.text = nullptr;
+  source.words = &word;
+  source.word_count = 1;
+  CHECK(message(source).find("source: words are compiled already") == 0);
 }
 
 TEST_CASE("the C interface: a late uniform gives the bits of a compiled one, run after run") {

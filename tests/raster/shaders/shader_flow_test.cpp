@@ -174,6 +174,56 @@ void main() {
   CHECK(load_texel(found, 39, 0) == glm::vec4{15.0f, 8.0f, 37.0f, 22.0f});
 }
 
+TEST_CASE("differences where neighbours are elsewhere do not depend on what ran before") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const UserShader shader = make_shader(compiled_flow(R"(#version 450
+uniform sampler2D t;
+layout(location = 0) in vec2 uv;
+layout(location = 0) out vec4 result;
+float helper(float p) {
+  if (int(gl_FragCoord.x * 7.0 + gl_FragCoord.y * 3.0) % 3 == 0) {
+    return texture(t, vec2(p, uv.y)).g;
+  }
+  return p * 0.7 + 0.1;
+}
+void main() {
+  float r = 0.0, s = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    if (gl_FragCoord.x > 200.0 && i > 1) continue;
+    if (int(gl_FragCoord.x * gl_FragCoord.y * 0.37 + float(i)) % 5 == 2) {
+      float v = helper(uv.x + float(i) * 0.1);
+      s += dFdx(v) + texture(t, vec2(v, 0.3)).r;
+      r += v;
+    }
+  }
+  result = vec4(r, s, 0.0, 1.0);
+}
+)")
+                                            .words);
+  test::Random random{5};
+  Texture texture = test::random_texture(Format::rgba16f, 64, random);
+  generate_mipmaps(texture, {});
+  const ShaderTexture textures[] = {
+      {.texture = &texture, .sampler = {.filter = Filter::trilinear}}};
+  const ShaderProgram program = compile_shader(shader, shader.uniforms.words);
+  std::optional<Image> first;
+  for (const Isa isa : available_isas()) {
+    for (const int threads : {1, 2, 7}) {
+      for (const int lanes : {32, 128, 0}) {
+        Image found = make_image(Format::rgba32f, 333, 77);
+        const ImageView view = found;
+        ThreadPool pool{threads, isa};
+        run_shader(program, {.textures = textures, .targets = {&view, 1}, .lanes = lanes}, pool);
+        if (!first) first = found;
+        CAPTURE(isa_name(isa));
+        CAPTURE(threads);
+        CAPTURE(lanes);
+        CHECK(test::first_difference(found, *first) == "");
+      }
+    }
+  }
+}
+
 TEST_CASE("min, max and clamp give the number, if the other is NaN; NMin and so on are the same") {
   if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
   GlslSource source{.name = "mine.frag"};

@@ -97,6 +97,11 @@ TEST_CASE("apply --shader: macros by --define") {
   check_refused(all.directory,
                 all.apply(SOFTFOCUS_TEST_DATA "/wgsl.spv", "none.npy", {"--define", "RED"}), 1,
                 {"wgsl.spv: it is SPIR-V", "for GLSL and HLSL"});
+  // Beside a text that takes them it is not.
+  const ProgramRun both = run_program(
+      all.apply(SOFTFOCUS_TEST_DATA "/wgsl.spv", "both.npy",
+                {"--shader", shader, "--define", "RED", "--texture", "noise=" + all.picture}));
+  CHECK(!contains(both.err, "SPIR-V"));
 }
 
 TEST_CASE("apply --shader: the same bits on every unit, and by threads") {

@@ -210,7 +210,10 @@ TEST_CASE("crosscheck --pipeline: a driver's inputs are the place in the picture
         {"crosscheck", "--driver", driver, "--pipeline", directory.file("inputs.toml"), "--json"});
     CAPTURE(driver);
     CAPTURE(run.out);
-    for (const json& of : json::parse(run.out)) {
+    CHECK(run.status == 0);
+    const json results = json::parse(run.out);
+    CHECK(results.size() >= 4);
+    for (const json& of : results) {
       CHECK(of["values"] > 0);
       CHECK(of["differing"] == 0);
     }
