@@ -43,8 +43,9 @@ void list_channels(PictureFile& file, std::string_view kind, NumberType type) {
     refuse_as_damaged(kind, stbi_failure_reason());
   }
   check_picture_size(kind, file.width, file.height);
-  // stb counts the alpha of a transparent colour only once it reads the pixels.
-  if (is_png(file.bytes) && has_transparent_colour(file.bytes)) ++channels;
+  // stb before 2.28 counts the alpha of a transparent colour only once it reads the pixels.
+  const bool has_alpha = channels % 2 == 0;
+  if (!has_alpha && is_png(file.bytes) && has_transparent_colour(file.bytes)) ++channels;
   constexpr std::string_view kNames[] = {"Y", "YA", "RGB", "RGBA"};
   for (const char name : kNames[channels - 1]) {
     file.planes.push_back({.name = std::string{name}, .type = type});

@@ -141,7 +141,20 @@ TEST_CASE("crosscheck: softpipe and its profile give the same bits" * doctest::t
 }
 TEST_CASE("crosscheck: lavapipe and its profile, which is llvmpipe's, give the same bits" *
           doctest::test_suite("long")) {
-  check_all_equal("lavapipe", few_cases());
+  if (!has_driver("lavapipe")) return;
+  const std::string renderer = crosscheck("lavapipe", "store/rgba8-around-every-byte").out;
+  if (contains(renderer, " Mesa 22.")) return check_all_equal("lavapipe", few_cases());
+  // Later ones do not look for sides that are powers of two where textures repeat.
+  const ProgramRun run = crosscheck("lavapipe", "*", {"--quick", "--json"});
+  std::size_t compared = 0;
+  for (const auto& entry : nlohmann::json::parse(run.out)) {
+    CAPTURE(entry.dump());
+    const std::string name = entry["case"];
+    if (name.find("repeat") != name.npos) continue;
+    ++compared;
+    CHECK(entry["differing"] == 0);
+  }
+  CHECK(compared > 60);
 }
 
 TEST_CASE("crosscheck: our GLSL on the emulated GPU gives the bits of its C++ form") {
