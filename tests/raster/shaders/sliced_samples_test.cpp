@@ -354,7 +354,8 @@ TEST_CASE("textureGather reads the four texels round a place, by every wrap and 
   const UserShader shadow =
       slices_shader("sampler2DShadow", "result = textureGather(t, uv * 7.3 - 3.1, 0.5);");
   Random random{9};
-  for (const auto& [width, height] : {std::pair{8, 4}, {7, 5}, {1, 1}}) {
+  for (const glm::ivec2 sides : {glm::ivec2{8, 4}, {7, 5}, {1, 1}}) {
+    const int width = sides.x, height = sides.y;
     for (const Format format : {Format::rgba8, Format::srgb8, Format::rgba16f, Format::rgba32f}) {
       Image image = make_image(format, width, height);
       for (int i = 0; i < width * height; ++i) {
