@@ -45,7 +45,7 @@ TEST_CASE("render: a large picture is made by rows, with the whole one's bytes a
     Words words{"render", "figures",   "--size", "4096x1024", "--method", "two-pass",
                 "--json", "--max-coc", "2",      "-o",        output};
     words.insert(words.end(), more.begin(), more.end());
-    const ProgramRun run = run_program(words);
+    ProgramRun run = run_program(words);
     CHECK(run.status == 0);
     return run;
   };
