@@ -287,6 +287,7 @@ class Emitter {
            std::any_of(region.begin(), region.end(),
                        [](const ShaderNode& node) { return node.kind != instruction; });
   }
+  /// A register that does not vary holds it: it has a number for each lane of a vector.
   ShaderRegister keep_range() {
     const ShaderRegister range = new_register(false);
     put_step(number_of(StepOp::keep_range), range);

@@ -136,6 +136,7 @@ bool run_lanes(const LaneProgram& program, LaneFrame& frame, Isa isa, std::size_
         break;
       }
       case StepOp::keep_range:
+        static_assert(sizeof frame.range <= 4 * sizeof(float), "a vector has four lanes or more");
         std::memcpy(frame.memory + step->to, &frame.range, sizeof frame.range);
         break;
       case StepOp::widen_range:

@@ -57,6 +57,7 @@ std::string why_whole(const Shot& shot, Isa isa) {
 struct FrameRows::State {
   const Shot& shot;
   ThreadPool& pool;
+  std::function<void(FrameStage)> on_stage;
   Frame frame{};
   PreparedScene prepared;
   Image picture, depth;  ///< of the frame's size, without texels
@@ -66,9 +67,10 @@ struct FrameRows::State {
   int next_tile_row = 0;
   std::deque<std::vector<std::uint16_t>> finished{};
 
-  State(const Shot& of, ThreadPool& with)
+  State(const Shot& of, ThreadPool& with, std::function<void(FrameStage)> told)
       : shot(of),
         pool(with),
+        on_stage(std::move(told)),
         prepared(prepare_scene(*of.scene, of.profile, with)),
         picture(without_texels(Format::rgba16f, of.width, of.height)),
         depth(without_texels(Format::r32f, of.width, of.height)) {
@@ -87,6 +89,11 @@ struct FrameRows::State {
     if (is_two_pass(shot)) {
       stream.emplace(shot.width, frame.lens->settings, shot.profile, pool.isa());
     }
+    tell(FrameStage::done);
+  }
+
+  void tell(FrameStage stage) const {
+    if (on_stage) on_stage(stage);
   }
 
   bool is_drawn() const { return next_tile_row * tiles.tiles_x >= tile_count(tiles); }
@@ -120,10 +127,13 @@ struct FrameRows::State {
     };
     if (is_drawn()) {
       assert(stream);
+      tell(FrameStage::filtering);
       return end_rows(*stream, pool, keep);
     }
+    tell(FrameStage::drawing);
     draw_band();
     if (on_drawn) on_drawn(drawn);
+    if (stream) tell(FrameStage::filtering);
     for (int y = 0; y < drawn.height; ++y) {
       const std::span<const std::uint16_t> next = row<std::uint16_t>(std::as_const(drawn), y);
       stream ? put_row(*stream, next, pool, keep) : keep(next);
@@ -131,8 +141,11 @@ struct FrameRows::State {
   }
 };
 
-FrameRows::FrameRows(const Shot& shot, ThreadPool& pool)
-    : state_(std::make_unique<State>(shot, pool)) {}
+FrameRows::FrameRows(const Shot& shot, ThreadPool& pool,
+                     const std::function<void(FrameStage)>& on_stage) {
+  if (on_stage) on_stage(FrameStage::drawing);
+  state_ = std::make_unique<State>(shot, pool, on_stage);
+}
 FrameRows::~FrameRows() = default;
 
 const Frame& FrameRows::frame() const { return state_->frame; }
@@ -143,6 +156,7 @@ void FrameRows::make(int count, Image& to, const FrameBandSink& on_drawn) {
     to = make_image(Format::rgba16f, state.shot.width, count);
   }
   while (state.finished.size() < static_cast<std::size_t>(count)) state.go_on(on_drawn);
+  state.tell(FrameStage::done);
   for (int y = 0; y < count; ++y) {
     std::copy(state.finished.front().begin(), state.finished.front().end(),
               row<std::uint16_t>(to, y).begin());

@@ -19,9 +19,11 @@ using FrameBandSink = std::function<void(const ConstImageView& rows)>;
 
 class FrameRows {
  public:
-  /// Needs a shot without a reason to be whole; both must outlive it. Sorts the triangles. Throws
+  /// Needs a shot without a reason to be whole. Sorts the triangles. `on_stage` is told as drawing
+  /// and filtering begin, again and again, and when they are done. All must outlive it. Throws
   /// LensError.
-  FrameRows(const Shot& shot, ThreadPool& pool);
+  FrameRows(const Shot& shot, ThreadPool& pool,
+            const std::function<void(FrameStage)>& on_stage = {});
   ~FrameRows();
   FrameRows(const FrameRows&) = delete;
   FrameRows& operator=(const FrameRows&) = delete;

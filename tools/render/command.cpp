@@ -280,8 +280,13 @@ Rendered make_rendered(const RenderOptions& options, const Scene& scene, double 
     std::erase(warnings, "");
   };
   if (may_render_by_rows(options)) {
-    if (why_whole(shot, pool.isa()).empty()) {
-      render_by_rows(options, shot, record, warnings, progress, pool);
+    const std::string why = why_whole(shot, pool.isa());
+    record.made = why.empty() ? "a band of rows at a time" : "whole: " + why;
+    if (why.empty()) {
+      StageWatch watch{progress, record.ms};
+      render_by_rows(
+          options, shot, record, warnings, [&](FrameStage stage) { watch.begin(stage); }, pool);
+      progress.clear();
       warn_of_frame();
       return {.warnings = std::move(warnings),
               .report = text_report(options, record),

@@ -165,6 +165,7 @@ std::string text_report(const RenderOptions& options, const RenderRecord& record
     text +=
         line("Drawn anew", short_number(100.0 * *record.frame.shaded_share) + " % of the pixels");
   }
+  if (!record.made.empty()) text += line("Made", record.made);
   text += line("Threads", std::to_string(options.pool.threads));
   text += line("Vector unit", std::string{isa_name(options.pool.isa)});
   text += "\n";

@@ -27,6 +27,7 @@ struct RenderRecord {
   std::string scene_title{};
   std::size_t triangles = 0;
   Camera camera{};                      ///< at the frame
+  std::string made{};                   ///< of a large picture: by rows, or why not
   std::uint64_t picture_hash = 0;       ///< hash_image()
   std::string gl_renderer{};            ///< of --gl; else empty
   std::vector<ChosenEffect> effects{};  ///< on the finished picture

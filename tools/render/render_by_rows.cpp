@@ -54,13 +54,13 @@ bool may_render_by_rows(const RenderOptions& options) {
 }
 
 void render_by_rows(const RenderOptions& options, const Shot& shot, RenderRecord& record,
-                    std::vector<std::string>& warnings, Progress& progress, ThreadPool& pool) {
+                    std::vector<std::string>& warnings,
+                    const std::function<void(FrameStage)>& on_stage, ThreadPool& pool) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point begun = Clock::now();
-  progress.show("drawing by rows");
   std::optional<FrameRows> rows;
   try {
-    rows.emplace(shot, pool);
+    rows.emplace(shot, pool, on_stage);
   } catch (const LensError& error) {
     refuse_lens(error, options);
   }
@@ -96,7 +96,8 @@ void render_by_rows(const RenderOptions& options, const Shot& shot, RenderRecord
                        file.write_at(place, bytes);
                      });
   notes.picture_hash = record.picture_hash = hash.value;
-  record.ms.draw = std::chrono::duration<double, std::milli>(Clock::now() - begun).count();
+  record.ms.encode = std::chrono::duration<double, std::milli>(Clock::now() - begun).count() -
+                     record.ms.draw - record.ms.focus - record.ms.filter;
   if (cut) warnings.push_back(cut->warning());
   std::optional<WholeFile> sidecar_file;
   const auto sidecar = sidecar_place(options);

@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <optional>
 
 #include "raster/shaders/glsl/glsl.h"
 #include "raster/shaders/shader.h"

@@ -49,7 +49,8 @@ TEST_CASE("render: a large picture is made by rows, with the whole one's bytes a
     CHECK(run.status == 0);
     return run;
   };
-  const ProgramRun by_rows = large(rows, {});
+  const std::string report = directory.file("report.txt");
+  const ProgramRun by_rows = large(rows, {"--report", report});
   const ProgramRun at_once = large(whole, {"--depth-output", directory.file("depth.pfm")});
   CHECK(read_file(rows) == read_file(whole));
   CHECK(by_rows.err == at_once.err);
@@ -58,6 +59,9 @@ TEST_CASE("render: a large picture is made by rows, with the whole one's bytes a
   CHECK(nlohmann::json::parse(read_file(rows + ".json"))["picture_hash"] ==
         nlohmann::json::parse(read_file(whole + ".json"))["picture_hash"]);
   CHECK(by_rows.peak_kib < at_once.peak_kib);
+  CHECK(contains(read_file(report), "a band of rows at a time"));
+  const auto times = nlohmann::json::parse(by_rows.out);
+  CHECK(times["with_depth_of_field"]["ms"] > times["without_depth_of_field"]["ms"]);
 }
 
 TEST_CASE("render: a method that reads object numbers gets those of the scene's objects") {

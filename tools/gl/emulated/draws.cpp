@@ -78,7 +78,8 @@ void draw_triangles(const ShaderDraw& draw, const std::vector<std::uint32_t>& in
 }
 
 /// Whether the three vertices are a triangle over the whole target, whose varyings are the place in
-/// it, and pixels neither tested nor blended: then they are shaded in rows (run_shader()).
+/// it, and pixels neither tested nor blended: then they are shaded in rows, with run_shader()'s
+/// place, so that a pipeline has the bits that it has without a driver.
 bool is_fullscreen(const ShaderDraw& draw, std::uint32_t vertex_count) {
   EmulatedGl& gl = emulated::gl();
   if (vertex_count != 3 || gl.tests_depth || gl.blends || gl.culls) return false;
