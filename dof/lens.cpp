@@ -103,7 +103,7 @@ CircleSizes circle_sizes(const ConstImageView& scene, const PixelCoc& coc, float
                          ThreadPool& pool) {
   std::vector<RowSizes> rows(static_cast<std::size_t>(scene.height));
   pool.for_each(scene.height, [&](int y) {
-    RowSizes& sizes = rows[static_cast<std::size_t>(y)];
+    RowSizes sizes;  // other threads' rows lie beside its place
     const auto values = row<std::uint16_t>(scene, y);
     for (std::size_t i = 3; i < values.size(); i += 4) {
       const float depth_m = half_to_float(values[i]);
@@ -112,6 +112,7 @@ CircleSizes circle_sizes(const ConstImageView& scene, const PixelCoc& coc, float
       if (radius > sizes.largest_px) sizes.largest_px = radius;
       if (radius > limit_px) ++sizes.beyond_limit;
     }
+    rows[static_cast<std::size_t>(y)] = sizes;
   });
   CircleSizes all;
   double beyond = 0.0;

@@ -200,13 +200,13 @@ DecodedTexture decode_texture(const Texture& texture, const Profile& profile, Is
     floats += texel_floats(image, border) * static_cast<std::size_t>(slice_count(texture, i));
   }
   if (floats > std::numeric_limits<std::int32_t>::max()) return decoded;
-  decoded.texels.resize(floats);
+  decoded.texels = make_row_memory<float>(floats);
 
   const Format format = texture.levels[0].format;
   decoded.are_whole = stay_whole(texture, profile);
   const Codes codes = is_8_bit(format) ? codes_for(format, decoded.are_whole, profile) : Codes{};
   for (std::size_t i = 0; i < texture.levels.size(); ++i) {
-    float* to = decoded.texels.data() + decoded.starts[i];
+    float* to = decoded.texels.get() + decoded.starts[i];
     for (int slice = 0; slice < slice_count(texture, i); ++slice) {
       const Image& image = slice_level(texture, slice, i);
       const std::size_t gap = 4 * static_cast<std::size_t>(border);
@@ -218,7 +218,7 @@ DecodedTexture decode_texture(const Texture& texture, const Profile& profile, Is
       to += texel_floats(image, border);
     }
     if (border > 0) {
-      decode_borders(decoded.texels.data() + decoded.starts[i], texture.levels[i].width);
+      decode_borders(decoded.texels.get() + decoded.starts[i], texture.levels[i].width);
     }
   }
   return decoded;
@@ -253,7 +253,7 @@ LaneArithmetic slice_arithmetic(const Texture& texture, const Sampler& sampler,
 
 LaneArithmetic lane_arithmetic(const DecodedTexture& texture, const Sampler& sampler,
                                const Profile& profile) {
-  if (texture.texels.empty()) return LaneArithmetic::by_sample;
+  if (texture.texels == nullptr) return LaneArithmetic::by_sample;
   const Format format = texture.source->levels[0].format;
   const TextureShape shape = texture.source->shape;
   if (shape == TextureShape::volume || shape == TextureShape::cube) {

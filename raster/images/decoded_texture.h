@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <vector>
 
 #include "raster/images/sampler.h"
 #include "raster/lanes/isa.h"
@@ -23,17 +22,6 @@ struct DecodedAxis {
   bool base_is_power_of_two = false;                            ///< level 0's
 };
 
-/// Of numbers that are not initialised.
-struct DecodedAllocator : RowAllocator<float> {
-  // NOLINTBEGIN(readability-identifier-naming): the standard library's names
-  template <class U>
-  struct rebind {
-    using other = DecodedAllocator;
-  };
-  // NOLINTEND(readability-identifier-naming)
-  void construct(float* place) { ::new (static_cast<void*>(place)) float; }
-};
-
 struct DecodedTexture {
   const Texture* source = nullptr;  ///< must outlive this
   int level_count = 0;
@@ -48,10 +36,10 @@ struct DecodedTexture {
   /// slices. Faces of a cube have a border of one texel, which lies before their first: what is
   /// beyond an edge or a corner (sliced_texture.h).
   alignas(64) std::array<std::int32_t, kMaxDecodedLevels> starts{};
-  /// Red, green, blue and alpha of each texel, from fetch_texel() or as `are_whole` says. Empty
+  /// Red, green, blue and alpha of each texel, from fetch_texel() or as `are_whole` says. Null
   /// if only sample() will do: for softpipe's flat textures and arrays, more than
   /// kMaxDecodedLevels levels, or 2^31 floats.
-  std::vector<float, DecodedAllocator> texels;
+  RowMemory<float> texels;
 };
 
 /// Halves as floats; not for the scalar unit.

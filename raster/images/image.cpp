@@ -1,16 +1,50 @@
 #include "raster/images/image.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cstring>
 
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
 namespace softfocus {
+
+void prefer_large_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
+#ifdef MADV_HUGEPAGE
+  constexpr std::size_t kLargePage = std::size_t{1} << 21;
+  if (bytes < 2 * kLargePage) return;
+  void* begin = memory;
+  std::size_t room = bytes;
+  if (std::align(kLargePage, kLargePage, begin, room) == nullptr) return;
+  madvise(begin, room / kLargePage * kLargePage, MADV_HUGEPAGE);  // a wish: it may fail
+#endif
+}
+
+RowBytes::RowBytes(std::size_t size) {
+  std::size_t room = size + kRowAlignment;
+  void* memory = std::calloc(room, 1);
+  if (memory == nullptr) throw std::bad_alloc();
+  prefer_large_pages(memory, room);
+  void* first = memory;
+  std::align(kRowAlignment, size, first, room);
+  bytes_ = {static_cast<std::byte*>(first), Free{memory, size}};
+}
+
+RowBytes::RowBytes(const RowBytes& other) : RowBytes(other.size()) {
+  std::copy(other.begin(), other.end(), begin());
+}
+
+bool RowBytes::operator==(const RowBytes& other) const {
+  return std::equal(begin(), end(), other.begin(), other.end());
+}
 
 Image make_image(Format format, int width, int height) {
   assert(width >= 1 && width <= kMaxImageSize && height >= 1 && height <= kMaxImageSize);
   Image image{.format = format, .width = width, .height = height, .stride_bytes = 0, .bytes = {}};
   const std::size_t used = static_cast<std::size_t>(width) * bytes_per_texel(format);
   image.stride_bytes = (used + kRowAlignment - 1) / kRowAlignment * kRowAlignment;
-  image.bytes.resize(image.stride_bytes * static_cast<std::size_t>(height));
+  image.bytes = RowBytes{image.stride_bytes * static_cast<std::size_t>(height)};
   return image;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <memory>
 #include <new>
 #include <span>
@@ -16,6 +17,10 @@ namespace softfocus {
 
 inline constexpr std::size_t kRowAlignment = 64;
 
+/// Tells the system that memory will be used as a whole: it may give it in large pages, which take
+/// fewer faults.
+void prefer_large_pages(void* memory, std::size_t bytes);
+
 template <class T>
 struct RowAllocator {
   using value_type = T;
@@ -23,7 +28,9 @@ struct RowAllocator {
   template <class U>
   RowAllocator(const RowAllocator<U>&) {}  // NOLINT(google-explicit-constructor)
   T* allocate(std::size_t count) {
-    return static_cast<T*>(::operator new (count * sizeof(T), std::align_val_t{kRowAlignment}));
+    void* memory = ::operator new (count * sizeof(T), std::align_val_t{kRowAlignment});
+    prefer_large_pages(memory, count * sizeof(T));
+    return static_cast<T*>(memory);
   }
   void deallocate(T* memory, std::size_t) {
     ::operator delete (memory, std::align_val_t{kRowAlignment});
@@ -46,12 +53,45 @@ RowMemory<T> make_row_memory(std::size_t count) {
   return RowMemory<T>(RowAllocator<T>{}.allocate(count));
 }
 
+/// Bytes from such a boundary on, 0 at first. Memory that the system gives as zeros is touched when
+/// it is used, by the thread that uses it.
+class RowBytes {
+ public:
+  RowBytes() = default;
+  explicit RowBytes(std::size_t size);
+  RowBytes(const RowBytes& other);
+  RowBytes(RowBytes&&) = default;
+  RowBytes& operator=(const RowBytes& other) { return *this = RowBytes{other}; }
+  RowBytes& operator=(RowBytes&&) = default;
+  ~RowBytes() = default;
+
+  std::byte* data() { return bytes_.get(); }
+  const std::byte* data() const { return bytes_.get(); }
+  std::size_t size() const { return bytes_ ? bytes_.get_deleter().size : 0; }
+  bool empty() const { return size() == 0; }
+  std::byte* begin() { return data(); }
+  std::byte* end() { return data() + size(); }
+  const std::byte* begin() const { return data(); }
+  const std::byte* end() const { return data() + size(); }
+  std::byte& operator[](std::size_t at) { return bytes_[at]; }
+  const std::byte& operator[](std::size_t at) const { return bytes_[at]; }
+  bool operator==(const RowBytes& other) const;
+
+ private:
+  struct Free {
+    void* memory;
+    std::size_t size;
+    void operator()(std::byte*) const { std::free(memory); }
+  };
+  std::unique_ptr<std::byte[], Free> bytes_;
+};
+
 struct Image {
   Format format = Format::rgba16f;
   int width = 0;
   int height = 0;
   std::size_t stride_bytes = 0;  ///< from one row to the next, a multiple of 64
-  std::vector<std::byte, RowAllocator<std::byte>> bytes;
+  RowBytes bytes;
 
   // A view of an image ends with it.
   operator ImageView() {  // NOLINT(google-explicit-constructor)

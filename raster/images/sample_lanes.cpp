@@ -158,7 +158,7 @@ SOFTFOCUS_INLINE RgbaLanes sample_nearest(const PlaceLanes& place, Ints level) {
   const SliceLanes slice = slice_at<shape>(place.texture, level, along_u.size, along_v.size, z);
   alignas(64) std::int32_t offsets[kLanes];
   store(offsets, slice.start + y * slice.row + (x << 2));
-  const float* texels = place.texture.texels.data();
+  const float* texels = place.texture.texels.get();
   return transpose_groups(load_texels(texels, offsets), load_texels(texels, offsets + 1),
                           load_texels(texels, offsets + 2), load_texels(texels, offsets + 3));
 }
@@ -200,8 +200,8 @@ SOFTFOCUS_INLINE void plan_linear(const PlaceLanes& place, const LevelLanes& lev
                                 behind == nullptr ? nullptr : &behind->fine);
   // Neighbouring pixels mostly read the same texels: prefetching for every fourth is enough.
   for (int lane = 0; lane < kLanes; lane += 4) {
-    __builtin_prefetch(place.texture.texels.data() + plan.fine.offsets[0][lane]);
-    __builtin_prefetch(place.texture.texels.data() + plan.fine.offsets[2][lane]);
+    __builtin_prefetch(place.texture.texels.get() + plan.fine.offsets[0][lane]);
+    __builtin_prefetch(place.texture.texels.get() + plan.fine.offsets[2][lane]);
   }
   if (!plan.two_levels) return;
   if constexpr (flushes_floats(arithmetic)) {
@@ -265,7 +265,7 @@ SOFTFOCUS_INLINE void find_repeating(const PlaceLanes& place, std::size_t level,
     store(fetch.offsets[3], lower + (second_u << 2));
   }
   keep_in_memory(fetch.offsets);
-  const float* texels = texture.texels.data();
+  const float* texels = texture.texels.get();
 #pragma GCC unroll 8
   for (int lane = 0; lane < kLanes; lane += 2) {
     __builtin_prefetch(texels + fetch.offsets[0][lane]);
@@ -487,10 +487,10 @@ template <LaneArithmetic arithmetic, TextureShape shape>
         continue;
       }
       if constexpr (kIsVolume) {
-        filter_volume<arithmetic>(texture.texels.data(), plan,
+        filter_volume<arithmetic>(texture.texels.get(), plan,
                                   plans[static_cast<std::size_t>(kMostSampled + i)], colours[i]);
       } else {
-        filter_plan<arithmetic>(texture.texels.data(), plan, colours[i]);
+        filter_plan<arithmetic>(texture.texels.get(), plan, colours[i]);
       }
       if constexpr ((kIsVolume || shape == TextureShape::cube) && flushes_floats(arithmetic)) {
         if (plan.two_levels) flush_sums(colours[i]);

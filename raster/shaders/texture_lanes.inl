@@ -100,7 +100,7 @@ void fetch_decoded_texels(const LaneSample& sample, const DecodedTexture& textur
                           std::size_t level, LaneFrame& frame) {
   const Image& image = texture.source->levels[level];
   const int slices = slice_count(*texture.source, level);
-  const float* texels = texture.texels.data() + texture.starts[level];
+  const float* texels = texture.texels.get() + texture.starts[level];
   const auto [begin, end] = vectors_of(sample, frame);
   for (int vector = begin; vector < end; ++vector) {
     const auto [x, y, slice, inside] = fetch_place(sample, image, slices, frame, vector);
@@ -264,7 +264,7 @@ void gather_decoded_texels(const LaneSample& sample, const ShaderTexture& from, 
   const std::int32_t width = texture.source->levels.front().width;
   const bool compares = sample.compared.is_there;
   const float* texels =
-      texture.texels.data() + texture.starts[0] + (compares ? 0 : sample.sample.channel);
+      texture.texels.get() + texture.starts[0] + (compares ? 0 : sample.sample.channel);
   const auto [begin, end] = vectors_of(sample, frame);
   for (int vector = begin; vector < end; ++vector) {
     const auto x = gathered_texels(sample, 0, texture.u, from.sampler.wrap_u, frame, vector);
@@ -297,7 +297,7 @@ SOFTFOCUS_INLINE bool fetch_texels(const LaneSample& sample, const ShaderTexture
     fetch_half_texels(sample, image, frame);
     return true;
   }
-  if (from.decoded == nullptr || from.decoded->are_whole || from.decoded->texels.empty()) {
+  if (from.decoded == nullptr || from.decoded->are_whole || from.decoded->texels == nullptr) {
     return false;
   }
   fetch_decoded_texels(sample, *from.decoded, static_cast<std::size_t>(level), frame);
@@ -315,7 +315,7 @@ void run_sample(const LaneStep& step, LaneFrame& frame) {
   if (filters && from->decoded != nullptr) return sample_texels(sample, *from, frame);
   const bool gathers = of.kind == SampleKind::gather && of.shape == TextureShape::flat;
   if (gathers && from->decoded != nullptr && !from->decoded->are_whole &&
-      !from->decoded->texels.empty()) {
+      from->decoded->texels != nullptr) {
     return gather_decoded_texels(sample, *from, frame);
   }
   sample_by_lane(sample, frame, kLanes);

@@ -28,6 +28,8 @@ std::string read_file_bytes(const std::filesystem::path& file, std::size_t large
   // In pieces, as a pipe or a device does not know its size.
   constexpr std::size_t kPiece = std::size_t{1} << 20;
   std::string bytes;
+  const std::uintmax_t size = std::filesystem::file_size(file, unknown);
+  if (!unknown && size <= largest) bytes.reserve(static_cast<std::size_t>(size) + kPiece);
   while (stream) {
     const std::size_t before = bytes.size();
     if (before > largest) {

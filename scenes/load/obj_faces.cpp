@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
-#include <unordered_set>
 
 #include "raster/numbers/random_bits.h"
+#include "raster/threads/loops.h"
 #include "scenes/load/first_come_numbers.h"
 
 namespace softfocus {
@@ -17,36 +17,32 @@ FirstComeNumbers::Key bits_of(glm::vec3 p) {
           std::bit_cast<std::uint32_t>(p.z + 0.0f)};
 }
 
-// Polygons by their places, whatever the first corner and the way round. Drawn both, two such
-// make speckles: interpolated depths differ in their last bits.
-class FacesSoFar {
- public:
-  explicit FacesSoFar(std::size_t expected) : triangles_(expected) {}
-  /// Whether it is there for the first time.
-  bool add(const std::vector<std::uint32_t>& places) {
-    if (places.size() == 3) {  // most are; any two orders of three corners are alike
-      std::array<std::uint32_t, 3> key{places[0], places[1], places[2]};
-      std::sort(key.begin(), key.end());
-      return triangles_.number(key).second;
-    }
-    const auto first = std::min_element(places.begin(), places.end());
-    std::vector<std::uint32_t> key(first, places.end());
-    key.insert(key.end(), places.begin(), first);
-    if (key[1] > key.back()) std::reverse(key.begin() + 1, key.end());
-    return known_.insert(std::move(key)).second;
+// A polygon's places from the lowest on, towards the lower of its neighbours: the same whatever the
+// first corner and the way round. Drawn both, two such make speckles: interpolated depths differ in
+// their last bits.
+void set_outline(const ObjText& obj, std::span<const std::uint32_t> place_of, std::size_t face,
+                 std::vector<std::uint32_t>& outline) {
+  const ObjCorner* corners = &obj.corners[obj.faces[face].first_corner];
+  outline.clear();
+  for (std::uint32_t i = 0; i < obj.faces[face].corner_count; ++i) {
+    outline.push_back(place_of[static_cast<std::size_t>(corners[i].position)]);
   }
+  std::rotate(outline.begin(), std::min_element(outline.begin(), outline.end()), outline.end());
+  if (outline[1] > outline.back()) std::reverse(outline.begin() + 1, outline.end());
+}
 
- private:
-  struct Mix {
-    std::size_t operator()(const std::vector<std::uint32_t>& key) const {
-      std::uint64_t mixed = key.size();
-      for (const std::uint32_t place : key) mixed = mix_bits(mixed + place);
-      return static_cast<std::size_t>(mixed);
-    }
-  };
-  FirstComeNumbers triangles_;
-  std::unordered_set<std::vector<std::uint32_t>, Mix> known_;
+// A face of those that have their lowest place in common. Alike have alike `others`.
+struct FaceAtPlace {
+  std::uint64_t others;  // the other two places of a triangle, a mixture of those of a polygon
+  std::uint32_t face;
 };
+
+std::uint64_t others_of(std::span<const std::uint32_t> outline) {
+  if (outline.size() == 3) return std::uint64_t{outline[1]} << 32 | outline[2];
+  std::uint64_t mixed = outline.size();
+  for (const std::uint32_t place : outline) mixed = mix_bits(mixed + place);
+  return mixed;
+}
 
 // A side of a triangle, from one place to another: 3 * triangle + which.
 using Side = std::uint32_t;
@@ -60,7 +56,8 @@ struct Edge {
 constexpr Side kNone = std::numeric_limits<Side>::max();
 
 // Sides in the order of the lower of their places; then those of a place by the higher one.
-std::vector<Side> pair_sides(std::span<const std::array<std::uint32_t, 3>> triangles) {
+std::vector<Side> pair_sides(std::span<const std::array<std::uint32_t, 3>> triangles,
+                             ThreadPool& pool) {
   const auto ends = [&](Side side) {
     const auto& triangle = triangles[side / 3];
     return std::minmax(triangle[side % 3], triangle[(side + 1) % 3]);
@@ -80,8 +77,10 @@ std::vector<Side> pair_sides(std::span<const std::array<std::uint32_t, 3>> trian
     edges[next[low]++] = {high, side};
   }
   std::vector<Side> paired(side_count, kNone);
-  for (std::size_t place = 0; place < place_count; ++place) {
-    const auto first = edges.begin() + starts[place], last = edges.begin() + starts[place + 1];
+  constexpr int kBand = 1 << 14;
+  for_each_row(pool, static_cast<int>(place_count), kBand, [&](int place) {
+    const auto at = static_cast<std::size_t>(place);
+    const auto first = edges.begin() + starts[at], last = edges.begin() + starts[at + 1];
     std::sort(first, last, [](const Edge& a, const Edge& b) {
       return a.to != b.to ? a.to < b.to : a.side < b.side;
     });
@@ -93,7 +92,7 @@ std::vector<Side> pair_sides(std::span<const std::array<std::uint32_t, 3>> trian
       }
       edge = other;
     }
-  }
+  });
   return paired;
 }
 
@@ -109,22 +108,54 @@ std::vector<std::uint32_t> number_places(const ObjText& obj) {
   return place_of;
 }
 
-std::size_t drop_doubled_faces(ObjText& obj, std::span<const std::uint32_t> place_of) {
-  FacesSoFar so_far{obj.faces.size()};
-  std::vector<std::uint32_t> places;
-  return std::erase_if(obj.faces, [&](const ObjFace& face) {
-    places.clear();
+std::vector<std::uint32_t> doubled_faces(const ObjText& obj,
+                                         std::span<const std::uint32_t> place_of) {
+  // Sorted by the lowest place first, so that what is compared lies together.
+  std::vector<std::uint32_t> outline, starts(obj.positions.size() + 1);
+  const auto lowest_of = [&](const ObjFace& face) {
+    std::uint32_t lowest = std::numeric_limits<std::uint32_t>::max();
     for (std::uint32_t i = 0; i < face.corner_count; ++i) {
-      const ObjCorner& corner = obj.corners[face.first_corner + i];
-      places.push_back(place_of[static_cast<std::size_t>(corner.position)]);
+      const auto position = static_cast<std::size_t>(obj.corners[face.first_corner + i].position);
+      lowest = std::min(lowest, place_of[position]);
     }
-    return !so_far.add(places);
-  });
+    return lowest;
+  };
+  for (const ObjFace& face : obj.faces) ++starts[lowest_of(face) + std::size_t{1}];
+  for (std::size_t i = 1; i < starts.size(); ++i) starts[i] += starts[i - 1];
+  std::vector<FaceAtPlace> faces(obj.faces.size());
+  for (std::uint32_t face = 0; face < obj.faces.size(); ++face) {
+    set_outline(obj, place_of, face, outline);
+    faces[starts[outline[0]]++] = {others_of(outline), face};  // which makes it the place's end
+  }
+  std::vector<std::uint32_t> doubled, earlier;
+  const auto is_there_before = [&](std::span<const FaceAtPlace> of_place, std::size_t i) {
+    if (i == 0 || of_place[i - 1].others != of_place[i].others) return false;
+    set_outline(obj, place_of, of_place[i].face, outline);
+    for (std::size_t k = i; k > 0 && of_place[k - 1].others == of_place[i].others; --k) {
+      set_outline(obj, place_of, of_place[k - 1].face, earlier);
+      if (outline == earlier) return true;
+    }
+    return false;
+  };
+  std::size_t begin = 0;
+  for (const std::uint32_t end : starts) {
+    const std::span<FaceAtPlace> of_place = std::span{faces}.subspan(begin, end - begin);
+    std::sort(of_place.begin(), of_place.end(), [](const FaceAtPlace& a, const FaceAtPlace& b) {
+      return a.others != b.others ? a.others < b.others : a.face < b.face;
+    });
+    for (std::size_t i = 0; i < of_place.size(); ++i) {
+      if (is_there_before(of_place, i)) doubled.push_back(of_place[i].face);
+    }
+    begin = end;
+  }
+  std::sort(doubled.begin(), doubled.end());
+  return doubled;
 }
 
-std::vector<bool> triangles_to_turn(std::span<const std::array<std::uint32_t, 3>> triangles) {
+std::vector<bool> triangles_to_turn(std::span<const std::array<std::uint32_t, 3>> triangles,
+                                    ThreadPool& pool) {
   std::vector<bool> turned(triangles.size()), reached(triangles.size());
-  const std::vector<Side> paired = pair_sides(triangles);
+  const std::vector<Side> paired = pair_sides(triangles, pool);
   const auto start = [&](Side side) { return triangles[side / 3][side % 3]; };
   const auto is_wrong = [&](Side side) {
     return paired[side] != kNone && start(side) == start(paired[side]);

@@ -22,6 +22,17 @@ namespace {
 
 constexpr std::size_t kMaxObjBytes = std::size_t{1} << 29;
 
+// `which` in ascending order.
+void drop_faces(std::span<const std::uint32_t> which, std::vector<ObjFace>& faces) {
+  std::uint32_t face = 0;
+  std::size_t dropped = 0;
+  std::erase_if(faces, [&](const ObjFace&) {
+    const bool drops = dropped < which.size() && which[dropped] == face++;
+    dropped += drops ? 1 : 0;
+    return drops;
+  });
+}
+
 // Three corners whose normals index all_normals below.
 struct Triangle {
   std::array<ObjCorner, 3> corners;
@@ -85,7 +96,7 @@ std::vector<Triangle> make_triangles(const ObjText& obj) {
 
 // Faces whose normals are made need neighbours that are wound alike: else the sums cancel.
 void turn_alike(const ObjText& obj, const std::vector<std::uint32_t>& place_of,
-                std::vector<Triangle>& triangles) {
+                std::vector<Triangle>& triangles, ThreadPool& pool) {
   std::vector<std::size_t> without_normals;
   std::vector<std::array<std::uint32_t, 3>> places;
   for (std::size_t i = 0; i < triangles.size(); ++i) {
@@ -100,7 +111,7 @@ void turn_alike(const ObjText& obj, const std::vector<std::uint32_t>& place_of,
       of_triangle[k] = place_of[static_cast<std::size_t>(corners[k].position)];
     }
   }
-  const std::vector<bool> turned = triangles_to_turn(places);
+  const std::vector<bool> turned = triangles_to_turn(places, pool);
   for (std::size_t i = 0; i < turned.size(); ++i) {
     if (!turned[i]) continue;
     Triangle& triangle = triangles[without_normals[i]];
@@ -165,16 +176,25 @@ std::vector<glm::vec3> complete_normals(const ObjText& obj,
 // A part that is being filled: corners that are equal share a vertex.
 struct GrowingPart {
   ObjModel::Part part;
-  FirstComeNumbers vertices;
+  FirstComeNumbers corners;              // of positions that have several vertices
+  std::vector<std::uint32_t> vertex_of;  // those corners
   bool has_uvs = false;
 };
 
-// The last vertex of a position. Most positions have one, which need not be looked for by its hash.
+// The last vertex of a position. Most positions have but one, which no table needs to hold.
 struct LastVertex {
-  const GrowingPart* part = nullptr;
+  GrowingPart* part = nullptr;
   ObjCorner corner;
   std::uint32_t number = 0;
+  bool is_in_table = false;
 };
+
+// Its vertex, the next if the corner is new.
+std::uint32_t vertex_of(GrowingPart& growing, const ObjCorner& corner, std::uint32_t next) {
+  const auto [number, is_new] = growing.corners.number(key_of(corner));
+  if (is_new) growing.vertex_of.push_back(next);
+  return growing.vertex_of[number];
+}
 
 void append_corner(GrowingPart& growing, const ObjText& obj,
                    const std::vector<glm::vec3>& all_normals, const ObjCorner& corner,
@@ -184,10 +204,15 @@ void append_corner(GrowingPart& growing, const ObjText& obj,
     mesh.indices.push_back(last.number);
     return;
   }
-  const auto [vertex, is_new] = growing.vertices.number(key_of(corner));
-  last = {&growing, corner, vertex};
+  const auto next = static_cast<std::uint32_t>(mesh.positions.size());
+  std::uint32_t vertex = next;
+  if (last.part != nullptr) {
+    if (!last.is_in_table) vertex_of(*last.part, last.corner, last.number);
+    vertex = vertex_of(growing, corner, next);
+  }
+  last = {&growing, corner, vertex, last.part != nullptr};
   mesh.indices.push_back(vertex);
-  if (!is_new) return;
+  if (vertex != next) return;
   const auto position = static_cast<std::size_t>(corner.position);
   mesh.positions.push_back(obj.positions[position]);
   if (!obj.colours.empty()) mesh.colours.push_back(obj.colours[position]);
@@ -305,16 +330,31 @@ void show_invisible(const ObjText& obj, const std::filesystem::path& file, ObjMo
 }  // namespace
 
 ObjModel load_obj_model(const std::filesystem::path& file, ThreadPool* pool) {
+  if (pool == nullptr) {
+    ThreadPool here{1};
+    return load_obj_model(file, &here);
+  }
   const std::string text = read_file_text(file, kMaxObjBytes);
   ObjText obj = parse_obj_text(text, file.string(), glm::dvec3{0.0}, pool);
   const glm::dvec3 origin = far_middle(obj);
   if (origin != glm::dvec3{0.0}) obj = parse_obj_text(text, file.string(), origin, pool);
-  const std::vector<std::uint32_t> place_of = number_places(obj);
+  std::vector<std::uint32_t> place_of, doubled;
+  std::vector<Triangle> triangles;
+  pool->for_each(2, [&](int task) {
+    if (task == 0) {
+      place_of = number_places(obj);
+      doubled = doubled_faces(obj, place_of);
+    } else {
+      triangles = make_triangles(obj);
+    }
+  });
   const std::size_t face_count = obj.faces.size();
-  const std::size_t doubled = drop_doubled_faces(obj, place_of);
-  std::vector<Triangle> triangles = make_triangles(obj);
+  if (!doubled.empty()) {
+    drop_faces(doubled, obj.faces);
+    triangles = make_triangles(obj);
+  }
   check_size(triangles, obj, file);
-  turn_alike(obj, place_of, triangles);
+  turn_alike(obj, place_of, triangles, *pool);
   const std::vector<glm::vec3> all_normals = complete_normals(obj, place_of, triangles);
 
   MtlMaterials library;
@@ -331,9 +371,9 @@ ObjModel load_obj_model(const std::filesystem::path& file, ThreadPool* pool) {
     model.warnings.push_back(printable(file.string()) + ": is far from the origin for its size; " +
                              whole_text(origin) + " is subtracted from its positions");
   }
-  if (doubled > 0) {
-    model.warnings.push_back(printable(file.string()) + ": " + std::to_string(doubled) + " of " +
-                             std::to_string(face_count) +
+  if (!doubled.empty()) {
+    model.warnings.push_back(printable(file.string()) + ": " + std::to_string(doubled.size()) +
+                             " of " + std::to_string(face_count) +
                              " faces are there before, perhaps reversed; each is drawn once");
   }
   for (const std::string& warning : library.warnings) {

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <optional>
 #include <unordered_map>
 #include <unordered_set>
@@ -21,11 +22,13 @@ bool is_blank(char c) { return c == ' ' || c == '\t'; }
 // The line that is being read.
 struct Place {
   const std::string& file;
-  std::size_t line = 0;
+  std::size_t lines_before = 0;  // of its piece
+  std::size_t line = 0;          // of its piece, from 1
 };
 
 [[noreturn]] void fail(const Place& place, const std::string& reason) {
-  throw SceneError(place.file + ":" + std::to_string(place.line) + ": " + reason);
+  throw SceneError(place.file + ":" + std::to_string(place.lines_before + place.line) + ": " +
+                   reason);
 }
 
 // Takes the next word off the line; empty at its end.
@@ -34,7 +37,7 @@ std::string_view next_word(std::string_view& line) {
   while (start < line.size() && is_blank(line[start])) ++start;
   std::size_t end = start;
   while (end < line.size() && !is_blank(line[end])) ++end;
-  const std::string_view word = line.substr(start, end - start);
+  const std::string_view word{line.data() + start, end - start};
   line.remove_prefix(end);
   return word;
 }
@@ -90,6 +93,15 @@ std::optional<glm::vec3> read_normal(std::string_view line) {
   return normal;
 }
 
+// What a piece of the text has, or what lies before it.
+struct Counts {
+  std::size_t lines = 0, positions = 0, uvs = 0, normals = 0;
+};
+
+// Something needs the counts of what lies before its piece.
+struct NotCounted {};
+constexpr std::size_t kNotCounted = std::numeric_limits<std::size_t>::max();
+
 // One index of a corner such as 7/-1/3; `count` is how many there are so far, from
 // which a negative one counts back.
 std::int32_t read_index(const Place& place, std::string_view text, std::size_t count,
@@ -101,6 +113,7 @@ std::int32_t read_index(const Place& place, std::string_view text, std::size_t c
                     "; a whole number from 1, or from -1 backwards, would be right");
   }
   if (index > 0) return index - 1;
+  if (count == kNotCounted) throw NotCounted{};
   const std::int64_t from_end = static_cast<std::int64_t>(count) + index;
   if (from_end < 0) {
     fail(place, std::to_string(index) + " goes back before the first " + what + "; there are " +
@@ -109,13 +122,28 @@ std::int32_t read_index(const Place& place, std::string_view text, std::size_t c
   return static_cast<std::int32_t>(from_end);
 }
 
-// What a piece of the text has, or what lies before it.
-struct Counts {
-  std::size_t lines = 0, positions = 0, uvs = 0, normals = 0;
-};
+// Most corners: whole numbers from 1, of at most nine digits. False for any other.
+bool read_plain_corner(std::string_view word, ObjCorner& corner) {
+  std::size_t at = 0;
+  for (std::int32_t* index : {&corner.position, &corner.uv, &corner.normal}) {
+    std::int32_t number = 0;
+    const std::size_t begin = at;
+    for (; at < word.size() && word[at] >= '0' && word[at] <= '9' && at < begin + 9; ++at) {
+      number = 10 * number + (word[at] - '0');
+    }
+    if (number > 0) *index = number - 1;
+    const bool is_left_out = index == &corner.uv && at == begin && at < word.size();
+    if (number == 0 && !is_left_out) return false;
+    if (at == word.size()) return true;
+    if (word[at++] != '/') return false;
+  }
+  return false;
+}
 
 ObjCorner read_corner(const Place& place, std::string_view word, const Counts& so_far) {
   ObjCorner corner;
+  if (read_plain_corner(word, corner)) return corner;
+  corner = {};
   const std::size_t first = word.find('/');
   corner.position = read_index(place, word.substr(0, first), so_far.positions, "position");
   if (first == std::string_view::npos) return corner;
@@ -128,7 +156,7 @@ ObjCorner read_corner(const Place& place, std::string_view word, const Counts& s
   return corner;
 }
 
-// A kind of thing that is tolerated, and the line of the first.
+// A kind of thing that is tolerated, and the line of the first, as Place has it.
 struct Tolerated {
   std::size_t count = 0;
   std::size_t first_line = 0;
@@ -177,7 +205,8 @@ struct FaceState {
 // Reads a text line by line.
 class LineReader {
  public:
-  explicit LineReader(std::string_view text) : text_(text) {}
+  explicit LineReader(std::string_view text)
+      : text_(text), has_returns_(text.find('\r') != text.npos) {}
 
   bool has_more() const { return start_ < text_.size(); }
   /// The lines that were read, those that continue another as well.
@@ -201,7 +230,8 @@ class LineReader {
  private:
   std::string_view next_alone() {
     if (newline_ <= start_) newline_ = std::min(text_.find('\n', start_), text_.size());
-    const std::size_t end = std::min(text_.substr(0, newline_).find('\r', start_), newline_);
+    std::size_t end = newline_;
+    if (has_returns_) end = std::min(text_.substr(0, newline_).find('\r', start_), newline_);
     const std::string_view line = text_.substr(start_, end - start_);
     start_ = std::min(end + (text_.substr(end).starts_with("\r\n") ? 2 : 1), text_.size());
     ++count_;
@@ -209,6 +239,7 @@ class LineReader {
   }
 
   std::string_view text_;
+  bool has_returns_;
   std::size_t start_ = 0;
   std::size_t newline_ = 0;  // the next, if it lies beyond `start_`
   std::size_t count_ = 0;
@@ -233,7 +264,9 @@ Counts count_lines(std::string_view text) {
 // piece before, the faces before its first `s` the smoothing group.
 struct Piece {
   std::string_view text;
+  bool is_counted = false;  // what lies `before`, as it is read
   Counts before;
+  std::size_t lines = 0;
   ObjText obj;
   std::vector<std::size_t> face_lines;
   std::optional<std::size_t> faces_before_material, faces_before_group;
@@ -264,11 +297,12 @@ std::vector<Piece> cut_into_pieces(std::string_view text) {
 
 void read_piece(Piece& piece, Place place, glm::dvec3 origin) {
   ObjText& obj = piece.obj;
+  place.lines_before = piece.before.lines;
   FaceState state;
   std::unordered_map<std::string, std::int32_t> number_of_material;
   LineReader reader{piece.text};
   while (reader.has_more()) {
-    place.line = piece.before.lines + reader.count() + 1;
+    place.line = reader.count() + 1;
     std::string_view line = reader.next();
     const std::string_view keyword = next_word(line);
     if (keyword == "v") {
@@ -286,9 +320,12 @@ void read_piece(Piece& piece, Place place, glm::dvec3 origin) {
       if (!normal) tolerate(piece.wild_normals, place);
       obj.normals.push_back(normal.value_or(glm::vec3{0.0f}));
     } else if (keyword == "f") {
-      const Counts so_far{0, piece.before.positions + obj.positions.size(),
-                          piece.before.uvs + obj.uvs.size(),
-                          piece.before.normals + obj.normals.size()};
+      const auto so_far = [&](std::size_t before, std::size_t here) {
+        return piece.is_counted ? before + here : kNotCounted;
+      };
+      const Counts counts{0, so_far(piece.before.positions, obj.positions.size()),
+                          so_far(piece.before.uvs, obj.uvs.size()),
+                          so_far(piece.before.normals, obj.normals.size())};
       ObjFace face{static_cast<std::uint32_t>(obj.corners.size()), 0, state.material,
                    state.smoothing_group};
       for (auto word = next_word(line); !word.empty() && word[0] != '#'; word = next_word(line)) {
@@ -296,7 +333,7 @@ void read_piece(Piece& piece, Place place, glm::dvec3 origin) {
           fail(place, "the face has more than " + std::to_string(kMaxFaceCorners) +
                           " corners; smaller faces would do");
         }
-        obj.corners.push_back(read_corner(place, word, so_far));
+        obj.corners.push_back(read_corner(place, word, counts));
       }
       if (face.corner_count < 3) {
         tolerate(piece.short_faces, place);
@@ -324,6 +361,20 @@ void read_piece(Piece& piece, Place place, glm::dvec3 origin) {
   }
   piece.last_material = state.material;
   piece.last_group = state.smoothing_group;
+  piece.lines = reader.count();
+}
+
+// Counts of each piece as of what lies before it; returns those of all.
+Counts set_before(const std::vector<Counts>& counts, std::vector<Piece>& pieces) {
+  Counts all;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    pieces[i].before = all;
+    all.lines += counts[i].lines;
+    all.positions += counts[i].positions;
+    all.uvs += counts[i].uvs;
+    all.normals += counts[i].normals;
+  }
+  return all;
 }
 
 // Materials by numbers of the whole text, and what the pieces before say of the first faces.
@@ -367,6 +418,7 @@ void put(const std::vector<Value>& from, std::vector<Value>& to, std::size_t fir
 
 // At the end only: files exist in which faces come before their vertices.
 void check_faces(Piece& piece, Place place, const Counts& all) {
+  place.lines_before = piece.before.lines;
   for (std::size_t i = 0; i < piece.obj.faces.size(); ++i) {
     place.line = piece.face_lines[i];
     const ObjFace& face = piece.obj.faces[i];
@@ -420,7 +472,7 @@ Tolerated sum_of(const std::vector<Piece>& pieces, Tolerated Piece::*kind) {
   Tolerated sum;
   for (const Piece& piece : pieces) {
     const Tolerated& more = piece.*kind;
-    if (sum.count == 0) sum.first_line = more.first_line;
+    if (sum.count == 0 && more.count > 0) sum.first_line = piece.before.lines + more.first_line;
     sum.count += more.count;
   }
   return sum;
@@ -442,6 +494,35 @@ void for_each_piece(std::vector<Piece>& pieces, ThreadPool& pool, const Work& wo
   }
 }
 
+// Reads all; returns what there is. Few files need what lies before a piece while it is read: for a
+// message's line, and for indices that count back.
+Counts read_pieces(std::vector<Piece>& pieces, const Place& place, glm::dvec3 origin,
+                   ThreadPool& pool) {
+  std::vector<Counts> counts;
+  try {
+    for_each_piece(pieces, pool, [&](Piece& piece) { read_piece(piece, place, origin); });
+    for (const Piece& piece : pieces) {
+      counts.push_back({piece.lines, piece.obj.positions.size(), piece.obj.uvs.size(),
+                        piece.obj.normals.size()});
+    }
+    return set_before(counts, pieces);
+  } catch (const NotCounted&) {
+  } catch (const SceneError&) {
+  }
+  counts.resize(pieces.size());
+  pool.for_each(static_cast<int>(pieces.size()), [&](int i) {
+    const auto number = static_cast<std::size_t>(i);
+    counts[number] = count_lines(pieces[number].text);
+    Piece again;
+    again.text = pieces[number].text;
+    again.is_counted = true;
+    pieces[number] = std::move(again);
+  });
+  const Counts all = set_before(counts, pieces);
+  for_each_piece(pieces, pool, [&](Piece& piece) { read_piece(piece, place, origin); });
+  return all;
+}
+
 }  // namespace
 
 ObjText parse_obj_text(std::string_view text, const std::string& file, glm::dvec3 origin,
@@ -456,21 +537,7 @@ ObjText parse_obj_text(std::string_view text, const std::string& file, glm::dvec
   }
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark
   std::vector<Piece> pieces = cut_into_pieces(text);
-  // Indices may count back from the face.
-  std::vector<Counts> counts(pieces.size());
-  pool->for_each(static_cast<int>(pieces.size()), [&](int i) {
-    const auto number = static_cast<std::size_t>(i);
-    counts[number] = count_lines(pieces[number].text);
-  });
-  Counts all;
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    pieces[i].before = all;
-    all.lines += counts[i].lines;
-    all.positions += counts[i].positions;
-    all.uvs += counts[i].uvs;
-    all.normals += counts[i].normals;
-  }
-  for_each_piece(pieces, *pool, [&](Piece& piece) { read_piece(piece, place, origin); });
+  const Counts all = read_pieces(pieces, place, origin, *pool);
   for_each_piece(pieces, *pool, [&](Piece& piece) { check_faces(piece, place, all); });
 
   ObjText obj;

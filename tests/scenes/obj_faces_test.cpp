@@ -3,8 +3,11 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "scenes/load/obj_model.h"
 #include "tests/support/mesh_checks.h"
@@ -94,6 +97,47 @@ TEST_CASE("which faces are doubled is what comparing all pairs says") {
   }
 }
 
+TEST_CASE("corners that are alike share a vertex of their part, whatever lies between them") {
+  constexpr int kPositions = 6;
+  std::string vertices = "vt 0 0\nvt 0.5 0\nvt 0 0.5\n";
+  std::vector<std::array<int, 3>> faces;  // each edge has four, so that none is turned
+  for (int a = 0; a < kPositions; ++a) {
+    vertices += "v " + std::to_string(a) + " " + std::to_string(a * a) + " 0\n";
+    for (int b = a + 1; b < kPositions; ++b) {
+      for (int c = b + 1; c < kPositions; ++c) faces.push_back({a, b, c});
+    }
+  }
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    CAPTURE(seed);
+    Random random{seed};
+    for (int i = static_cast<int>(faces.size()) - 1; i > 0; --i) {
+      std::swap(faces[static_cast<std::size_t>(i)],
+                faces[static_cast<std::size_t>(random.whole(0, i))]);
+    }
+    std::string text = vertices;
+    std::vector<std::pair<int, int>> known[2];  // position and texture coordinate of a vertex
+    std::vector<std::uint32_t> indices[2];
+    for (std::size_t face = 0; face < faces.size(); ++face) {
+      const std::size_t part = face < 2 ? face : random.next() % 2;
+      text += part == 0 ? "usemtl a\nf" : "usemtl b\nf";
+      for (const int position : faces[face]) {
+        const int uv = random.whole(0, 2);
+        text += " " + std::to_string(position + 1) + "/" + std::to_string(uv + 1);
+        const auto at = std::find(known[part].begin(), known[part].end(), std::pair{position, uv});
+        indices[part].push_back(static_cast<std::uint32_t>(at - known[part].begin()));
+        if (at == known[part].end()) known[part].emplace_back(position, uv);
+      }
+      text += "\n";
+    }
+    const ObjModel model = model_of(text);
+    REQUIRE(model.parts.size() == 2);
+    for (std::size_t part = 0; part < 2; ++part) {
+      CHECK(model.parts[part].mesh.indices == indices[part]);
+      CHECK(model.parts[part].mesh.positions.size() == known[part].size());
+    }
+  }
+}
+
 TEST_CASE("a cube whose sides are wound anyhow is a closed surface with normals to one side") {
   const std::string vertices =
       "v -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\nv -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\n";
@@ -122,13 +166,15 @@ TEST_CASE("a cube whose sides are wound anyhow is a closed surface with normals 
 
 TEST_CASE("pieces that fit stay, and edges of three triangles join none") {
   using Triangles = std::vector<std::array<std::uint32_t, 3>>;
-  CHECK(triangles_to_turn(Triangles{}).empty());
-  CHECK(triangles_to_turn(Triangles{{0, 1, 2}, {2, 1, 3}}) == std::vector<bool>{false, false});
-  CHECK(triangles_to_turn(Triangles{{0, 1, 2}, {1, 2, 3}}) == std::vector<bool>{false, true});
-  CHECK(triangles_to_turn(Triangles{{0, 1, 2}, {1, 2, 3}, {2, 1, 4}}) ==
+  ThreadPool pool{2};
+  CHECK(triangles_to_turn(Triangles{}, pool).empty());
+  CHECK(triangles_to_turn(Triangles{{0, 1, 2}, {2, 1, 3}}, pool) ==
+        std::vector<bool>{false, false});
+  CHECK(triangles_to_turn(Triangles{{0, 1, 2}, {1, 2, 3}}, pool) == std::vector<bool>{false, true});
+  CHECK(triangles_to_turn(Triangles{{0, 1, 2}, {1, 2, 3}, {2, 1, 4}}, pool) ==
         std::vector<bool>{false, false, false});
   // The first of three is the one that does not fit.
-  CHECK(triangles_to_turn(Triangles{{0, 2, 1}, {2, 1, 3}, {2, 3, 4}}) ==
+  CHECK(triangles_to_turn(Triangles{{0, 2, 1}, {2, 1, 3}, {2, 3, 4}}, pool) ==
         std::vector<bool>{true, false, false});
 }
 
@@ -138,7 +184,8 @@ TEST_CASE("a strip with one side only comes to an end") {
   for (std::uint32_t i = 0; i < kCount; ++i) {
     strip.push_back({i, (i + 1) % kCount, (i + 2) % kCount});
   }
-  CHECK(triangles_to_turn(strip).size() == kCount);
+  ThreadPool pool{1};
+  CHECK(triangles_to_turn(strip, pool).size() == kCount);
 }
 
 TEST_CASE("faces whose normals are given are not turned to fit") {

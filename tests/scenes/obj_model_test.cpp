@@ -56,11 +56,11 @@ TEST_CASE("numbers are the floats nearest to their decimals") {
 
 namespace {
 
-// A long text that is read in pieces: 60000 triangles of their own corners, counted back, of one
-// material and smoothing group in a thousand; the later half is coloured.
+// A long text that is read in pieces: 60000 triangles of their own corners, counted back or from
+// the first, of one material and smoothing group in a thousand; the later half is coloured.
 constexpr std::size_t kLongFaces = 60000;
 
-std::string long_text() {
+std::string long_text(bool counts_back = true) {
   std::string text = "mtllib a.mtl\n";
   for (std::size_t i = 0; i < kLongFaces; ++i) {
     const std::string number = std::to_string(i);
@@ -68,7 +68,11 @@ std::string long_text() {
     text += i < kLongFaces / 2 ? "\n" : " 0.25 0.5 0\n";
     text += "vt " + number + " 0\nvn 0 0 " + number + "1\n";
     if (i % 1000 == 500) text += "usemtl m" + number + "\ns " + number + "\n";
-    text += i % 7 == 0 ? "f -3/-1/-1 -2 \\\n -1\n" : "f -3/-1/-1 -2 -1\n";
+    const auto index = [&](std::size_t count, std::size_t back) {
+      return counts_back ? "-" + std::to_string(back) : std::to_string(count * (i + 1) + 1 - back);
+    };
+    text += "f " + index(3, 3) + "/" + index(1, 1) + "/" + index(1, 1) + " " + index(3, 2);
+    text += (i % 7 == 0 ? " \\\n " : " ") + index(3, 1) + "\n";
   }
   return text;
 }
@@ -76,7 +80,10 @@ std::string long_text() {
 }  // namespace
 
 TEST_CASE("a long text has the same numbers, materials and groups in pieces") {
-  const std::string text = long_text();
+  bool counts_back = false;
+  SUBCASE("indices from the first") {}
+  SUBCASE("indices that count back") { counts_back = true; }
+  const std::string text = long_text(counts_back);
   REQUIRE(text.size() > std::size_t{3} << 20);
   ThreadPool pool{3};
   const ObjText obj = parse_obj_text(text, "a.obj", {}, &pool);
@@ -124,7 +131,10 @@ TEST_CASE("a line that goes on behind a backslash is in one piece") {
 }
 
 TEST_CASE("the first error of a long text is told, with its line" * doctest::test_suite("long")) {
-  std::string text = long_text();
+  bool counts_back = false;
+  SUBCASE("indices from the first") {}
+  SUBCASE("indices that count back") { counts_back = true; }
+  std::string text = long_text(counts_back);
   const auto line_of = [&](std::size_t place) {
     return std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(place), '\n') + 1;
   };
@@ -133,8 +143,20 @@ TEST_CASE("the first error of a long text is told, with its line" * doctest::tes
     text.replace(place, 3, "v x");
     CHECK(complaint(text).starts_with("a.obj:" + std::to_string(line_of(place)) + ": \"x"));
   }
-  text = long_text() + "f 1 2 999999999\n";
+  text = long_text(counts_back) + "f 1 2 999999999\n";
   CHECK(complaint(text).starts_with("a.obj:" + std::to_string(line_of(text.size() - 1)) + ": "));
+}
+
+TEST_CASE("what is left out of a long text is told with the line of the first") {
+  for (const bool counts_back : {false, true}) {
+    const std::string text = long_text(counts_back);
+    const auto lines = std::to_string(std::count(text.begin(), text.end(), '\n') + 1);
+    const ObjText obj = parse(text + "f 1 2\nf 1 2\nf 1/999999999 2 3\nvt x\n");
+    REQUIRE(obj.warnings.size() == 3);
+    CHECK(obj.warnings[0].starts_with("a.obj:" + lines + ": 2 faces"));
+    CHECK(contains(obj.warnings[1], "texture coordinate is out of range"));
+    CHECK(contains(obj.warnings[2], "texture coordinate is not there"));
+  }
 }
 
 TEST_CASE("corners may have texture coordinates and normals, or leave them out") {
