@@ -28,13 +28,14 @@ std::ptrdiff_t plane_stride(int width) {
   return stride % 256 == 0 ? stride + kMostLanes : stride;
 }
 
-Planes make_planes(int count, int width, int height) {
+Planes make_planes(int count, int width, int height, ThreadPool& pool) {
   Planes planes;
   planes.width = width;
   planes.height = height;
   planes.stride = plane_stride(width);
   planes.plane = planes.stride * height;
-  planes.values = make_row_memory<float>(static_cast<std::size_t>(count * planes.plane));
+  planes.values =
+      make_row_memory<float>(static_cast<std::size_t>(count * planes.plane), &pool.memory());
   return planes;
 }
 
@@ -64,7 +65,7 @@ void split_picture_row(const DofInput& input, int y, float* to, std::ptrdiff_t p
 }
 
 Planes split_picture(const DofInput& input, ThreadPool& pool) {
-  Planes planes = make_planes(4, input.scene.width, input.scene.height);
+  Planes planes = make_planes(4, input.scene.width, input.scene.height, pool);
   pool.for_each(planes.height, [&](int y) {
     split_picture_row(input, y, plane_row(planes, 0, y), planes.plane,
                       static_cast<int>(planes.stride), pool.isa());

@@ -26,8 +26,8 @@ struct Planes {
 /// Floats from row to row for rows of `width`: a multiple of kMostLanes.
 std::ptrdiff_t plane_stride(int width);
 
-/// `count` planes, not initialised.
-Planes make_planes(int count, int width, int height);
+/// `count` planes, not initialised, of the pool's memory.
+Planes make_planes(int count, int width, int height, ThreadPool& pool);
 
 inline float* plane_row(Planes& planes, int plane, int y) {
   return planes.values.get() + plane * planes.plane + y * planes.stride;

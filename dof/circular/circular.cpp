@@ -225,7 +225,8 @@ void circular(const DofInput& input, const ImageView& result, int components, Th
   // One after the other, the fields share the memory between the passes.
   const Planes& cells = fields.cells;
   const int planes = (fields.near_field ? kNear : kFar).planes(components);
-  Planes across = make_planes(std::max(planes, kFar.planes(components)), cells.width, cells.height);
+  Planes across =
+      make_planes(std::max(planes, kFar.planes(components)), cells.width, cells.height, pool);
   const Circular all{fields, tiles, pattern, components, across};
   blur_field(all, kFar, pool);
   if (fields.near_field) blur_field(all, kNear, pool);

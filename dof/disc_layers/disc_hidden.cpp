@@ -19,18 +19,19 @@ namespace {
 // Rows of a task.
 constexpr int kBand = kDiscBlock;
 
-// The memory of a search, in one piece, so that the allocator keeps it from frame to frame.
+// The memory of a search.
 struct SearchMemory {
   RowMemory<float> values;
   std::vector<HiddenStrip> known;
 };
 
-HiddenSearch make_search(const DofInput& input, SearchMemory& memory) {
+HiddenSearch make_search(const DofInput& input, SearchMemory& memory, MemoryShelf* shelf) {
   const int width = input.scene.width, height = input.scene.height;
   const int strips = (width + kStrip - 1) / kStrip;
   const std::ptrdiff_t stride = std::ptrdiff_t{strips + 2} * kStrip;
   const std::ptrdiff_t plane = stride * height;
-  memory.values = make_row_memory<float>(static_cast<std::size_t>(plane + (3 * plane + 1) / 2));
+  memory.values =
+      make_row_memory<float>(static_cast<std::size_t>(plane + (3 * plane + 1) / 2), shelf);
   memory.known.assign(static_cast<std::size_t>(strips) * static_cast<std::size_t>(height), {});
   float* radii = memory.values.get();
   auto* distances = reinterpret_cast<std::uint16_t*>(radii + plane);
@@ -156,11 +157,11 @@ HiddenPicture nothing_hidden(int width, int height) {
   return hidden;
 }
 
-ImageView make_hidden_picture(HiddenPicture& hidden, int width, int height) {
+ImageView make_hidden_picture(HiddenPicture& hidden, int width, int height, MemoryShelf* shelf) {
   constexpr std::size_t kTexelBytes = 8;
   const std::size_t stride =
       (static_cast<std::size_t>(width) + kStrip - 1) / kStrip * kStrip * kTexelBytes;
-  hidden.memory = make_row_memory<std::byte>(stride * static_cast<std::size_t>(height));
+  hidden.memory = make_row_memory<std::byte>(stride * static_cast<std::size_t>(height), shelf);
   const ImageView picture{Format::rgba16f, width, height, static_cast<std::ptrdiff_t>(stride),
                           hidden.memory.get()};
   hidden.picture = picture;
@@ -171,12 +172,12 @@ HiddenPicture find_hidden(const DofInput& input, ThreadPool& pool) {
   if (pool.isa() == Isa::scalar) return find_hidden_oracle(input);
   const int width = input.scene.width, height = input.scene.height;
   SearchMemory memory;
-  HiddenSearch search = make_search(input, memory);
+  HiddenSearch search = make_search(input, memory, &pool.memory());
   HiddenPicture hidden = nothing_hidden(width, height);
   for_each_row(pool, height, kBand, [&](int y) { split_row(search, y, pool.isa()); });
   const auto near = [](const HiddenStrip& strip) { return strip.near != 0; };
   if (std::none_of(memory.known.begin(), memory.known.end(), near)) return hidden;
-  const ImageView made = make_hidden_picture(hidden, width, height);
+  const ImageView made = make_hidden_picture(hidden, width, height, &pool.memory());
   if (!first_round(search, made, hidden, pool)) return nothing_hidden(width, height);
   second_round(search, made, hidden, pool);
   return hidden;

@@ -52,7 +52,8 @@ HiddenPicture find_hidden_oracle(const DofInput& input);
 /// Nothing hidden in a picture of that size; and memory for `picture`, not initialised, in which
 /// rows have room for whole vectors.
 HiddenPicture nothing_hidden(int width, int height);
-ImageView make_hidden_picture(HiddenPicture& hidden, int width, int height);
+ImageView make_hidden_picture(HiddenPicture& hidden, int width, int height,
+                              MemoryShelf* shelf = nullptr);
 
 /// Whether anything is hidden in a rectangle of the picture or within a disc's reach of it.
 bool hidden_near(const HiddenPicture& hidden, int x, int y, int width, int height);

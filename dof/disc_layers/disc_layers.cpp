@@ -354,7 +354,7 @@ void blur_discs(const DofInput& input, const ImageView& result, ThreadPool& pool
   if (highlights.rest.width != 0) rest.scene = highlights.rest;
   const HiddenPicture hidden = find(rest, pool);
   const DiscLevels made = make_disc_levels(rest, hidden, ladder, pool);
-  LitGains gains = make_gains(highlights, made.levels);
+  LitGains gains = make_gains(highlights, made.levels, pool.memory());
   const Frame frame{rest, hidden, ladder, made.levels, highlights, gains, pool.isa()};
   see_levels<Workspace>(
       frame, pool, [&](std::size_t level, int side, const LevelRectangle& at, Workspace& work) {

@@ -46,7 +46,6 @@ struct DiscLevel {
 /// picture's first and last. Needs a level other than 0.
 LevelRow disc_row(const DiscLevel& level, int side, int x, int y);
 
-/// Their memory is one piece, so that the allocator keeps it from frame to frame.
 struct DiscLevels {
   std::vector<DiscLevel> levels;
   RowMemory<float> memory;

@@ -60,7 +60,7 @@ HiddenPicture find_known(const DofInput& input, ThreadPool& pool) {
   const int width = input.scene.width, height = input.scene.height;
   HiddenPicture hidden = find_hidden(input, pool);
   if (hidden.empty()) {
-    const ImageView made = make_hidden_picture(hidden, width, height);
+    const ImageView made = make_hidden_picture(hidden, width, height, &pool.memory());
     for (int y = 0; y < height; ++y) {
       std::copy_n(texels_of(input.scene, y), 4 * width, texels_of(made, y));
     }

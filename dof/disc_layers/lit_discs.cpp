@@ -39,7 +39,8 @@ bool lit_near(const LitRung& rung, std::size_t level, int x, int y, int width, i
   return false;
 }
 
-LitGains make_gains(const DiscHighlights& highlights, const std::vector<DiscLevel>& levels) {
+LitGains make_gains(const DiscHighlights& highlights, const std::vector<DiscLevel>& levels,
+                    MemoryShelf& shelf) {
   LitGains gains;
   // Counts floats first, then takes them.
   for (const bool count : {true, false}) {
@@ -52,7 +53,7 @@ LitGains make_gains(const DiscHighlights& highlights, const std::vector<DiscLeve
             take_planes(1, levels[i].width, levels[i].height, gains.memory.get(), used));
       }
     }
-    if (count) gains.memory = make_row_memory<float>(used);
+    if (count) gains.memory = make_row_memory<float>(used, &shelf);
   }
   return gains;
 }

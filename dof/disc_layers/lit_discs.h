@@ -22,7 +22,8 @@ struct LitGains {
   std::vector<std::vector<LevelPlanes>> planes;  ///< of a lit rung: of level 1, 2, ...
   RowMemory<float> memory;
 };
-LitGains make_gains(const DiscHighlights& highlights, const std::vector<DiscLevel>& levels);
+LitGains make_gains(const DiscHighlights& highlights, const std::vector<DiscLevel>& levels,
+                    MemoryShelf& shelf);
 
 /// The largest gain: a highlight never gains light. Behind the focus a larger level does not know
 /// yet what the finer ones leave open.

@@ -286,7 +286,7 @@ DiscLevels make_disc_levels(const DofInput& input, const HiddenPicture& hidden,
   while (levels.size() < std::max(ladder.size(), std::size_t{2})) {
     levels.push_back(make_level((levels.back().width + 1) / 2, (levels.back().height + 1) / 2));
   }
-  result.memory = make_row_memory<float>(take_level_planes(levels, nullptr));
+  result.memory = make_row_memory<float>(take_level_planes(levels, nullptr), &pool.memory());
   take_level_planes(levels, result.memory.get());
   const FloatRow ones(static_cast<std::size_t>(padded_width(levels[0])), 1.0f);
   int first_rung = kFineRungs;

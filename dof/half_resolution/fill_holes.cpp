@@ -143,7 +143,7 @@ void fill_holes(Planes& planes, std::span<const int> channels, int weight, Threa
   while (width > 1 || height > 1) {
     width = coarse_size(width);
     height = coarse_size(height);
-    levels.push_back(make_planes(count + 1, width, height));
+    levels.push_back(make_planes(count + 1, width, height, pool));
     if (levels.size() == 1) {
       pull_level({planes, channels, weight, false, levels.back()}, pool);
     } else {

@@ -43,7 +43,7 @@ int in_range(int value, int count) { return std::clamp(value, 0, count - 1); }
 // L in each cell.
 Planes split_cells(const DofInput& input, Planes& cells, ThreadPool& pool) {
   const int width = input.scene.width, height = input.scene.height;
-  Planes light = make_planes(1, cells.width, cells.height);
+  Planes light = make_planes(1, cells.width, cells.height, pool);
   const std::ptrdiff_t padded = plane_stride(width) + 2 * kMostLanes;
   for_each_row_with<std::vector<float>>(pool, cells.height, kTaskRows, [&](int y, auto& scratch) {
     scratch.resize(static_cast<std::size_t>(8 * padded));
@@ -168,7 +168,7 @@ void half_cell(const SplitTexel* four, float* to) {
 
 HalfFields make_half_fields(const DofInput& input, ThreadPool& pool, int corners) {
   HalfFields fields{
-      make_planes(kHalfPlanes, (input.scene.width + 1) / 2, (input.scene.height + 1) / 2),
+      make_planes(kHalfPlanes, (input.scene.width + 1) / 2, (input.scene.height + 1) / 2, pool),
       false,
       {}};
   const Planes light = split_cells(input, fields.cells, pool);

@@ -210,7 +210,7 @@ void anisotropic_diffusion(const DofInput& input, const ImageView& result, Threa
   if (stages == 0) return store_mean(input, result, scene, scene, scene, pool);
   Planes states[2][2];
   for (auto& pair : states) {
-    for (Planes& state : pair) state = make_planes(3, scene.width, scene.height);
+    for (Planes& state : pair) state = make_planes(3, scene.width, scene.height, pool);
   }
   const int tasks = ((scene.width + kDiffusionTileWidth - 1) / kDiffusionTileWidth) *
                     ((scene.height + kDiffusionTileHeight - 1) / kDiffusionTileHeight);

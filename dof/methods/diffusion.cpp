@@ -105,7 +105,7 @@ void diffuse_line(float* first, std::ptrdiff_t step, std::ptrdiff_t plane, int c
 // The nodes of the far layer or of the near one, diffused.
 Planes diffused_layer(const Planes& picture, int channels, ThreadPool& pool) {
   const bool is_near = channels == kNearChannels;
-  Planes layer = make_planes(1 + channels, picture.width, picture.height);
+  Planes layer = make_planes(1 + channels, picture.width, picture.height, pool);
   pool.for_each(layer.height, [&](int y) {
     for (int x = 0; x < layer.width; ++x) {
       const float* from = plane_row(picture, 0, y) + x;

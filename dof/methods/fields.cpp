@@ -131,7 +131,7 @@ void blur_field(const Planes& scene, Field field, float field_px, ThreadPool& po
 
 // The picture behind the near field. The fourth plane: 1 where it is known.
 Planes behind_near(const Planes& scene, FieldRadii radii, ThreadPool& pool) {
-  Planes behind = make_planes(4, scene.width, scene.height);
+  Planes behind = make_planes(4, scene.width, scene.height, pool);
   pool.for_each(scene.height, [&](int y) {
     const float* from = plane_row(scene, 0, y);
     float* to = plane_row(behind, 0, y);

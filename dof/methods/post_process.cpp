@@ -54,7 +54,7 @@ constexpr double kSmallVariance = 24.0 / 17.0;
 
 Planes make_quarter(const Planes& full, ThreadPool& pool) {
   Planes quarter = make_planes(4, (full.width + kQuarter - 1) / kQuarter,
-                               (full.height + kQuarter - 1) / kQuarter);
+                               (full.height + kQuarter - 1) / kQuarter, pool);
   pool.for_each(quarter.height, [&](int y) {
     float* to = plane_row(quarter, 0, y);
     for (int x = 0; x < quarter.stride; ++x) {
@@ -99,8 +99,8 @@ std::vector<float> gaussian_weights(double variance) {
 // Convolves all planes along x, then along y. The edges repeat outwards.
 Planes convolve(const Planes& source, const std::vector<float>& weights, ThreadPool& pool) {
   const int taps = static_cast<int>(weights.size()), reach = taps / 2;
-  Planes across = make_planes(4, source.width, source.height);
-  Planes result = make_planes(4, source.width, source.height);
+  Planes across = make_planes(4, source.width, source.height, pool);
+  Planes result = make_planes(4, source.width, source.height, pool);
   pool.for_each(source.height, [&](int y) {
     std::vector<float> padded(static_cast<std::size_t>(source.width + 2 * reach + kMostLanes));
     std::vector<const float*> rows;

@@ -183,7 +183,8 @@ void fill_row(const Planes& visible, const PictureObjects& objects, const Distan
 
 Surfaces find_surfaces(const DofInput& input, ThreadPool& pool) {
   const int width = input.scene.width, height = input.scene.height;
-  Surfaces surfaces{split_picture(input, pool), make_planes(hidden_plane::kCount, width, height)};
+  Surfaces surfaces{split_picture(input, pool),
+                    make_planes(hidden_plane::kCount, width, height, pool)};
   const Planes& visible = surfaces.visible;
   const PictureObjects objects = find_objects(visible, kVisibleRadius, input.objects, pool);
   Distances distances;

@@ -173,7 +173,7 @@ struct Levels {
   std::vector<Level> levels;
   RowMemory<float> memory;
 };
-Levels make_levels(int width, int height, std::size_t count) {
+Levels make_levels(int width, int height, std::size_t count, MemoryShelf& shelf) {
   Levels made;
   for (; made.levels.size() < count; width = (width + 1) / 2, height = (height + 1) / 2) {
     made.levels.push_back({width, height, {}});
@@ -187,7 +187,7 @@ Levels make_levels(int width, int height, std::size_t count) {
         seen = take_planes(kSeenChannels, level.width, level.height, made.memory.get(), used);
       }
     }
-    if (counting) made.memory = make_row_memory<float>(used);
+    if (counting) made.memory = make_row_memory<float>(used, &shelf);
   }
   return made;
 }
@@ -198,7 +198,7 @@ void object_layers(const DofInput& input, const ImageView& result, ThreadPool& p
   const Surfaces surfaces = find_surfaces(input, pool);
   const LayerMarks marks = mark_layers(surfaces, pool);
   const ObjectLadder ladder = make_object_ladder(input.settings.max_coc_px);
-  const Levels made = make_levels(result.width, result.height, ladder.levels.size());
+  const Levels made = make_levels(result.width, result.height, ladder.levels.size(), pool.memory());
   const Frame frame{surfaces, ladder, marks, made.levels, pool.isa()};
   see_levels<Workspace>(
       frame, pool, [&](std::size_t level, int side, const LevelRectangle& at, Workspace& work) {

@@ -14,7 +14,7 @@ constexpr float kPolygonStretch = 1.75f;
 
 LineField far_of(const HalfFields& fields, int reach, ThreadPool& pool) {
   const Planes& cells = fields.cells;
-  LineField field = make_line_field(false, cells.width, cells.height, reach);
+  LineField field = make_line_field(false, cells.width, cells.height, reach, pool);
   pool.for_each(cells.height, [&](int y) {
     for (int c = 0; c < 3; ++c) {
       std::copy_n(plane_row(cells, kFarColour + c, y), cells.width, line_row(field, c, y));
@@ -31,7 +31,7 @@ LineField far_of(const HalfFields& fields, int reach, ThreadPool& pool) {
 
 LineField near_of(const HalfFields& fields, const HalfTiles& tiles, int reach, ThreadPool& pool) {
   const Planes& cells = fields.cells;
-  LineField field = make_line_field(true, cells.width, cells.height, reach);
+  LineField field = make_line_field(true, cells.width, cells.height, reach, pool);
   pool.for_each(cells.height, [&](int y) {
     for (int c = 0; c < kLineValues; ++c) {
       std::copy_n(plane_row(cells, c < 3 ? kNearColour + c : kNearOpacity, y), cells.width,

@@ -138,9 +138,9 @@ PolygonLines polygon_lines(int corners, float largest, bool upside_down) {
   return lines;
 }
 
-LineField make_line_field(bool near, int width, int height, int reach) {
+LineField make_line_field(bool near, int width, int height, int reach, ThreadPool& pool) {
   LineField field{near, width, height, reach + 2, {}, {}};
-  field.planes = make_planes(kLinePlanes, width + 2 * field.margin + kMostLanes, height);
+  field.planes = make_planes(kLinePlanes, width + 2 * field.margin + kMostLanes, height, pool);
   std::fill_n(field.planes.values.get(), kLinePlanes * field.planes.plane, 0.0f);
   field.runs.assign(static_cast<std::size_t>(height), {{0, width}});
   return field;
@@ -185,10 +185,10 @@ void blur_line(const PolygonLine& line, const LineField& from, LineField& to, Th
 }
 
 void blur_polygon(const PolygonLines& lines, LineField& field, ThreadPool& pool) {
-  LineField across = make_line_field(field.near, field.width, field.height, largest_reach(lines));
-  LineField part = make_line_field(field.near, field.width, field.height, largest_reach(lines));
-  std::array<LineField, 2> groups{make_line_field(field.near, field.width, field.height, 0),
-                                  make_line_field(field.near, field.width, field.height, 0)};
+  LineField across = make_line_field(field.near, field.width, field.height, largest_reach(lines), pool);
+  LineField part = make_line_field(field.near, field.width, field.height, largest_reach(lines), pool);
+  std::array<LineField, 2> groups{make_line_field(field.near, field.width, field.height, 0, pool),
+                                  make_line_field(field.near, field.width, field.height, 0, pool)};
   across.runs = part.runs = field.runs;
   pool.for_each(field.height, [&](int y) {
     for (const int c : {kLineSize, kLineCounts}) {

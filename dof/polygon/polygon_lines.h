@@ -73,7 +73,7 @@ struct LineField {
   Planes planes;                           ///< kLinePlanes
   std::vector<std::vector<LineRun>> runs;  ///< of each row
 };
-LineField make_line_field(bool near, int width, int height, int reach);
+LineField make_line_field(bool near, int width, int height, int reach, ThreadPool& pool);
 
 inline float* line_row(LineField& field, int plane, int y) {
   return plane_row(field.planes, plane, y) + field.margin;

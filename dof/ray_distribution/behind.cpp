@@ -141,7 +141,7 @@ TileMask seen_tiles(const Planes& scene, const std::vector<TileRadii>& tiles, fl
 // Level `i` above `fine`.
 Level make_level(const Planes& scene, const std::vector<Level>& finer, ThreadPool& pool) {
   const Planes& fine = finer.empty() ? scene : finer.back().pixels;
-  Level level{make_planes(4, (fine.width + 1) / 2, (fine.height + 1) / 2), {}, {}, {}};
+  Level level{make_planes(4, (fine.width + 1) / 2, (fine.height + 1) / 2, pool), {}, {}, {}};
   pool.for_each(level.pixels.height,
                 [&](int y) { farthest_row(fine, y, level.pixels, pool.isa()); });
   const auto columns = static_cast<std::size_t>(plane_stride(scene.width));
@@ -218,7 +218,8 @@ Behind guess_behind(const Planes& scene, ThreadPool& pool) {
     nearest = std::min(nearest, tile.least);
     farthest = std::max(farthest, tile.most);
   }
-  Behind behind{make_planes(4, scene.width, scene.height), seen_tiles(scene, tiles, farthest)};
+  Behind behind{make_planes(4, scene.width, scene.height, pool),
+                seen_tiles(scene, tiles, farthest)};
   std::vector<Level> levels;
   // A level's pixels are `size` pixels wide.
   for (int size = 1; static_cast<float>(size) < 2.0f * (farthest - nearest); size *= 2) {

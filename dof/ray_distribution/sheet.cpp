@@ -88,7 +88,7 @@ Sheet make_sheet(const Planes& planes, int before, ThreadPool& pool) {
   sheet.tiles_across = tiles_for(planes.width + 2 * before);
   sheet.tiles_down = tiles_for(planes.height + 2 * before);
   sheet.pixels = make_planes(4, sheet.tiles_across * kReachTile + 2 * kMostLanes,
-                             sheet.tiles_down * kReachTile + 2);
+                             sheet.tiles_down * kReachTile + 2, pool);
   const auto tiles = static_cast<std::size_t>(sheet.tiles_across * sheet.tiles_down);
   sheet.row_least.assign(tiles * kReachTile, kNothingBehind);
   sheet.row_most.assign(tiles * kReachTile, -kNothingBehind);

@@ -78,12 +78,14 @@ struct TapLevels {
   std::vector<std::vector<const float*>> rows;  // of a level: `margin` rows above the first on
 };
 
-TapLevels levels_for(const Planes& cells, int reach, int levels, bool near_field) {
+TapLevels levels_for(const Planes& cells, int reach, int levels, bool near_field,
+                     ThreadPool& pool) {
   const int margin = reach + kMostLanes, planes = near_field ? kNearTaps : kFarTaps;
-  return {margin,
-          planes,
-          make_planes(planes * levels, cells.width + 2 * margin + 2 * kHalfTile, cells.height),
-          {}};
+  return {
+      margin,
+      planes,
+      make_planes(planes * levels, cells.width + 2 * margin + 2 * kHalfTile, cells.height, pool),
+      {}};
 }
 
 void repeat_ends(float* row, int margin, int width, std::ptrdiff_t stride) {
@@ -186,7 +188,7 @@ void ring_bucket(const DofInput& input, const ImageView& result, ThreadPool& poo
   const RingTaps far = taps_of(tiles.far_reach);
   const RingTaps near = fields.near_field ? taps_of(tiles.near_reach) : RingTaps{};
   TapLevels levels = levels_for(cells, std::max(far.reach, near.reach),
-                                std::max(far.levels, near.levels), fields.near_field);
+                                std::max(far.levels, near.levels), fields.near_field, pool);
   for (const bool in_near : {false, true}) {
     if (in_near && !fields.near_field) continue;
     const RingTaps& taps = in_near ? near : far;

@@ -62,7 +62,7 @@ CutCounts count_cuts(const Planes& scene) {
 // Planes of values that `write` sets, and the plane that tells where they are known.
 template <class Write>
 Planes guessed(const Planes& scene, int values, ThreadPool& pool, const Write& write) {
-  Planes sheet = make_planes(values + 1, scene.width, scene.height);
+  Planes sheet = make_planes(values + 1, scene.width, scene.height, pool);
   pool.for_each(scene.height, [&](int y) {
     const float* from = plane_row(scene, 0, y);
     float* to = plane_row(sheet, 0, y);
@@ -106,7 +106,7 @@ Planes near_layer(const Planes& scene, const LayerSplit& split, ThreadPool& pool
     to[0] = radius_px;
     to[plane] = radius_px < split.near_px ? 1.0f : 0.0f;
   });
-  Planes layer = make_planes(kLayerPlanes, scene.width, scene.height);
+  Planes layer = make_planes(kLayerPlanes, scene.width, scene.height, pool);
   for (int i = 0; i < 3; ++i) copy_plane(scene, i, layer, i);
   copy_plane(radius, 1, layer, kLayerOpacity);
   copy_plane(radius, 0, layer, kLayerRadius);
@@ -138,7 +138,7 @@ Planes far_layer(const Planes& scene, const LayerSplit& split, ThreadPool& pool)
     for (int i = 0; i < 4; ++i) to[i * plane] = from[i * plane];
     to[4 * plane] = radius_px > split.far_px ? 1.0f : 0.0f;
   });
-  Planes layer = make_planes(kLayerPlanes, scene.width, scene.height);
+  Planes layer = make_planes(kLayerPlanes, scene.width, scene.height, pool);
   for (int i = 0; i < 3; ++i) copy_plane(whole, i, layer, i);
   std::fill_n(plane_row(layer, kLayerOpacity, 0), layer.plane, 1.0f);
   copy_plane(whole, 3, layer, kLayerRadius);
@@ -226,7 +226,7 @@ void guess_hidden(Planes& sheet, int values, ThreadPool& pool) {
   while (!all_known(level(top), values)) {
     const Planes& fine = level(top);
     if (fine.width == 1 && fine.height == 1) return;
-    Planes coarse = make_planes(values + 1, (fine.width + 1) / 2, (fine.height + 1) / 2);
+    Planes coarse = make_planes(values + 1, (fine.width + 1) / 2, (fine.height + 1) / 2, pool);
     for_each_row(pool, coarse.height, kTaskRows, [&](int y) { pull_row(fine, values, y, coarse); });
     coarser.push_back(std::move(coarse));
     ++top;

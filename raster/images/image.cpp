@@ -4,22 +4,7 @@
 #include <cassert>
 #include <cstring>
 
-#ifdef __linux__
-#include <sys/mman.h>
-#endif
-
 namespace softfocus {
-
-void prefer_large_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
-#ifdef MADV_HUGEPAGE
-  constexpr std::size_t kLargePage = std::size_t{1} << 21;
-  if (bytes < 2 * kLargePage) return;
-  void* begin = memory;
-  std::size_t room = bytes;
-  if (std::align(kLargePage, kLargePage, begin, room) == nullptr) return;
-  madvise(begin, room / kLargePage * kLargePage, MADV_HUGEPAGE);  // a wish: it may fail
-#endif
-}
 
 RowBytes::RowBytes(std::size_t size) {
   std::size_t room = size + kRowAlignment;

@@ -12,14 +12,9 @@
 
 #include "raster/images/image_view.h"
 #include "raster/numbers/hash.h"
+#include "raster/threads/memory.h"
 
 namespace softfocus {
-
-inline constexpr std::size_t kRowAlignment = 64;
-
-/// Tells the system that memory will be used as a whole: it may give it in large pages, which take
-/// fewer faults.
-void prefer_large_pages(void* memory, std::size_t bytes);
 
 template <class T>
 struct RowAllocator {
@@ -27,30 +22,28 @@ struct RowAllocator {
   RowAllocator() = default;
   template <class U>
   RowAllocator(const RowAllocator<U>&) {}  // NOLINT(google-explicit-constructor)
-  T* allocate(std::size_t count) {
-    void* memory = ::operator new (count * sizeof(T), std::align_val_t{kRowAlignment});
-    prefer_large_pages(memory, count * sizeof(T));
-    return static_cast<T*>(memory);
-  }
-  void deallocate(T* memory, std::size_t) {
-    ::operator delete (memory, std::align_val_t{kRowAlignment});
-  }
+  T* allocate(std::size_t count) { return static_cast<T*>(allocate_rows(count * sizeof(T))); }
+  void deallocate(T* memory, std::size_t) { free_rows(memory); }
   bool operator==(const RowAllocator&) const = default;
 };
 
 struct RowDelete {
+  MemoryShelf* shelf = nullptr;  ///< from which it was lent, if from one
   void operator()(void* memory) const {
-    ::operator delete (memory, std::align_val_t{kRowAlignment});
+    shelf != nullptr ? shelf->take_back(memory) : free_rows(memory);
   }
 };
 /// Numbers from such a boundary on.
 template <class T>
 using RowMemory = std::unique_ptr<T[], RowDelete>;
 
-/// `count` numbers, not initialised.
+/// `count` numbers, not initialised. A shelf, as of a pool, keeps their memory, and must outlive
+/// them.
 template <class T>
-RowMemory<T> make_row_memory(std::size_t count) {
-  return RowMemory<T>(RowAllocator<T>{}.allocate(count));
+RowMemory<T> make_row_memory(std::size_t count, MemoryShelf* shelf = nullptr) {
+  const std::size_t bytes = count * sizeof(T);
+  void* memory = shelf != nullptr ? shelf->lend(bytes) : allocate_rows(bytes);
+  return RowMemory<T>(static_cast<T*>(memory), RowDelete{shelf});
 }
 
 /// Bytes from such a boundary on, 0 at first. Memory that the system gives as zeros is touched when

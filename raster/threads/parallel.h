@@ -4,6 +4,7 @@
 // depend on neither.
 
 #include "raster/lanes/isa.h"
+#include "raster/threads/memory.h"
 
 namespace softfocus {
 
@@ -19,6 +20,8 @@ class ThreadPool {
 
   int threads() const;
   Isa isa() const { return isa_; }
+  /// Of what is made with this pool, frame after frame.
+  MemoryShelf& memory() { return memory_; }
 
   /// Runs body(0) to body(count - 1), each once and in the default floating-point environment
   /// (float_environment.h), and returns when all have ended. If a body throws, iterations that
@@ -41,6 +44,7 @@ class ThreadPool {
   void run(int count, Iteration iteration);
 
   State* state_;  // owned; <memory> is more to parse than all of this header
+  MemoryShelf memory_;
   Isa isa_;
 };
 

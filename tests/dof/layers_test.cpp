@@ -133,7 +133,7 @@ TEST_CASE("a guess of hidden pixels is what its equations say, to the bit") {
   for (const Size size : {Size{1, 1}, {2, 1}, {7, 5}, {64, 33}, {3, 90}}) {
     const int width = size.width, height = size.height;
     for (const int every : {2, 17, 1000}) {
-      Planes sheet = make_planes(2, width, height);
+      Planes sheet = make_planes(2, width, height, pool);
       Level level{width, height, {}, {}};
       const Image noise = random_scene_image(width, height, 3);
       for (int y = 0; y < height; ++y) {
@@ -163,7 +163,7 @@ TEST_CASE("a guess of hidden pixels is what its equations say, to the bit") {
 TEST_CASE(
     "a hole within one value takes that value, and a sheet without any value stays as it is") {
   ThreadPool pool(2);
-  Planes sheet = make_planes(2, 50, 40);
+  Planes sheet = make_planes(2, 50, 40, pool);
   for (const bool hole : {true, false}) {
     for (int y = 0; y < 40; ++y) {
       for (int x = 0; x < 50; ++x) {
@@ -177,7 +177,8 @@ TEST_CASE(
 }
 
 TEST_CASE("depth is cut where things fall apart, and a slope is not cut") {
-  Planes scene = make_planes(4, 60, 1);
+  ThreadPool pool(1);
+  Planes scene = make_planes(4, 60, 1, pool);
   float* radius = plane_row(scene, 3, 0);
   const auto fill = [&](int begin, int end, float radius_px) {
     std::fill(radius + begin, radius + end, radius_px);

@@ -57,8 +57,8 @@ std::vector<std::uint16_t> random_numbers(int width, int height, std::uint64_t s
 }
 
 // A plane of radii alone.
-Planes radii_of(int width, int height, std::uint64_t seed) {
-  Planes planes = make_planes(1, width, height);
+Planes radii_of(int width, int height, std::uint64_t seed, ThreadPool& pool) {
+  Planes planes = make_planes(1, width, height, pool);
   Random random{seed};
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
@@ -160,7 +160,8 @@ TEST_CASE("a surface belongs to layers in shares that add up to one, in the orde
 TEST_CASE("an object without numbers is what linked neighbours connect, for any threads" *
           doctest::test_suite("threads")) {
   for (const auto& [width, height] : {std::pair{1, 1}, {1, 70}, {90, 1}, {50, 100}, {33, 64}}) {
-    const Planes radii = radii_of(width, height, 5);
+    ThreadPool memory(1);
+    const Planes radii = radii_of(width, height, 5, memory);
     for (const int threads : {1, 2, 3}) {
       ThreadPool pool(threads);
       const PictureObjects objects = find_objects(radii, 0, {}, pool);
@@ -175,7 +176,7 @@ TEST_CASE("an object without numbers is what linked neighbours connect, for any 
 
 TEST_CASE("a plane is one object at any slope, and a step in depth parts two") {
   ThreadPool pool(2);
-  Planes planes = make_planes(1, 40, 20);
+  Planes planes = make_planes(1, 40, 20, pool);
   for (const float slope : {0.1f, 1.0f, 3.5f}) {
     for (int y = 0; y < 20; ++y) {
       for (int x = 0; x < 40; ++x) {
@@ -195,7 +196,7 @@ TEST_CASE("a plane is one object at any slope, and a step in depth parts two") {
 
 TEST_CASE("numbers part what has no step in depth, and tell a far part of an object to be of it") {
   ThreadPool pool(2);
-  Planes planes = make_planes(1, 8, 1);
+  Planes planes = make_planes(1, 8, 1, pool);
   std::fill_n(plane_row(planes, 0, 0), 8, 3.0f);
   plane_row(planes, 0, 0)[7] = 9.0f;
   const std::vector<std::uint16_t> numbers{5, 5, 5, 7, 7, 5, 5, 5};

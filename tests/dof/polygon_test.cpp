@@ -29,9 +29,9 @@ int reach_of(const PolygonLines& lines) {
   return reach;
 }
 
-LineField random_field(bool near, int width, int height, int reach) {
+LineField random_field(bool near, int width, int height, int reach, ThreadPool& pool) {
   RandomSequence random{5};
-  LineField field = make_line_field(near, width, height, reach);
+  LineField field = make_line_field(near, width, height, reach, pool);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       for (int c = 0; c < 4; ++c) {
@@ -125,13 +125,13 @@ struct CellPicture {
 CellPicture picture_of_cell(int corners, float size, bool upside_down) {
   constexpr int kSide = 91, kMiddle = 45;
   const PolygonLines lines = polygon_lines(corners, size, upside_down);
-  LineField field = make_line_field(true, kSide, kSide, reach_of(lines));
+  ThreadPool pool(2);
+  LineField field = make_line_field(true, kSide, kSide, reach_of(lines), pool);
   for (int y = 0; y < kSide; ++y) {
     std::fill_n(line_row(field, kLineSize, y), kSide, size);
     if (y == kMiddle) line_row(field, 0, y)[kMiddle] = 1000.0f;
     repeat_line_ends(field, 0, kLinePlanes, y);
   }
-  ThreadPool pool(2);
   blur_polygon(lines, field, pool);
   CellPicture picture;
   for (int y = 0; y < kSide; ++y) {
@@ -179,9 +179,9 @@ TEST_CASE("a blur along a line is what its equation says, of both fields") {
                             Segment{c, s, -before, all - before, 2.0 * s / c}};
   const PolygonLines lines = polygon_lines(5, 5.0f, false);
   for (const bool near : {false, true}) {
-    const LineField field = random_field(near, 31, 23, reach_of(lines));
+    const LineField field = random_field(near, 31, 23, reach_of(lines), pool);
     for (std::size_t pass = 0; pass < 2; ++pass) {
-      LineField blurred = make_line_field(near, 31, 23, 0);
+      LineField blurred = make_line_field(near, 31, 23, 0, pool);
       blur_line(lines.parts[0][pass], field, blurred, pool);
       double worst = 0.0;
       for (int y = 0; y < 23; ++y) {

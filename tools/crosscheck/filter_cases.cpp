@@ -229,9 +229,9 @@ struct PolygonCase {
 };
 
 /// Random light, with sizes in blocks so that some differ sharply, and some blur nothing.
-LineField random_field(const PolygonCase& what, int reach) {
+LineField random_field(const PolygonCase& what, int reach, ThreadPool& pool) {
   RandomNumbers random{811};
-  LineField field = make_line_field(what.near, what.width, what.height, reach);
+  LineField field = make_line_field(what.near, what.width, what.height, reach, pool);
   for (int y = 0; y < what.height; ++y) {
     for (int x = 0; x < what.width; ++x) {
       const float opacity = what.near ? random.between(0.0f, 1.0f) : 0.0f;
@@ -301,7 +301,7 @@ void blur_both(const Bench& bench, Tally& tally, const PolygonCase& what) {
   for (const auto& part : lines.parts) {
     for (const PolygonLine& line : part) reach = std::max(reach, line.reach);
   }
-  LineField field = random_field(what, reach);
+  LineField field = random_field(what, reach, bench.pool);
   const GlTexture values = upload(four_planes(field, 0, 4));
   const GlTexture sizes = upload(four_planes(field, kLineSize, 2));
   std::vector<GlTarget> parts;

@@ -70,8 +70,8 @@ void motion_blur(const MotionBlurSettings& settings, const ConstImageView& pictu
   const int width = picture.width, size = pass.radius_px;
   // All of it is written, and zeros before would take a tenth of the time.
   const std::ptrdiff_t stride = (width + 7) / 8 * 8;
-  const RowMemory<std::uint64_t> memory =
-      make_row_memory<std::uint64_t>(static_cast<std::size_t>(stride * picture.height));
+  const RowMemory<std::uint64_t> memory = make_row_memory<std::uint64_t>(
+      static_cast<std::size_t>(stride * picture.height), &pool.memory());
   const ImageView spread =
       view_of(Format::rgba16f, memory.get(), width, picture.height, 8 * stride);
   motion_to_either_side(pass, velocity, spread, profile, pool);

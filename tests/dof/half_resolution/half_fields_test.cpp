@@ -78,7 +78,7 @@ TEST_CASE("the cells of half resolution are what their equations say") {
 TEST_CASE("holes are filled from around them, and cells that are there stay") {
   ThreadPool pool(2);
   constexpr int kWidth = 37, kHeight = 21;
-  Planes planes = make_planes(3, kWidth, kHeight);
+  Planes planes = make_planes(3, kWidth, kHeight, pool);
   const auto hole = [](int x, int y) { return x >= 10 && x < 23 && y >= 6 && y < 15; };
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
@@ -106,7 +106,7 @@ TEST_CASE("holes are filled from around them, and cells that are there stay") {
 
 TEST_CASE("planes with nothing but holes keep the mean of their values") {
   ThreadPool pool(1);
-  Planes planes = make_planes(2, 5, 3);
+  Planes planes = make_planes(2, 5, 3, pool);
   for (int y = 0; y < 3; ++y) {
     for (int x = 0; x < 5; ++x) {
       plane_row(planes, 0, y)[x] = 2.5f;

@@ -1,0 +1,36 @@
+#pragma once
+// Large memory that is needed again and again: what the system gives anew it gives page by page,
+// and a frame's worth takes it longer than many filters.
+
+#include <cstddef>
+
+namespace softfocus {
+
+/// Tells the system that memory will be used as a whole: it may give it in large pages.
+void prefer_large_pages(void* memory, std::size_t bytes);
+
+inline constexpr std::size_t kRowAlignment = 64;
+
+/// Memory from such a boundary on, as operator new.
+void* allocate_rows(std::size_t bytes);
+void free_rows(void* memory);
+
+/// Keeps what was given back, at most as much as was lent at once. Threads may share it.
+class MemoryShelf {
+ public:
+  MemoryShelf();
+  ~MemoryShelf();
+  MemoryShelf(const MemoryShelf&) = delete;
+  MemoryShelf& operator=(const MemoryShelf&) = delete;
+
+  /// As allocate_rows(), but as an earlier user has left it. To be given back before the shelf
+  /// ends.
+  void* lend(std::size_t bytes);
+  void take_back(void* memory);
+
+ private:
+  struct State;
+  State* state_;  // owned; <memory> is more to parse than all of this header
+};
+
+}  // namespace softfocus
