@@ -25,19 +25,22 @@ std::string read_file_bytes(const std::filesystem::path& file, std::size_t large
                                        : std::string("cannot be read: ") + std::strerror(errno));
   }
 
-  // In pieces, as a pipe or a device does not know its size.
+  // In pieces, as a pipe or a device does not know its size. A file is one, with a byte more that
+  // tells its end.
   constexpr std::size_t kPiece = std::size_t{1} << 20;
-  std::string bytes;
+  std::size_t piece = kPiece;
   const std::uintmax_t size = std::filesystem::file_size(file, unknown);
-  if (!unknown && size <= largest) bytes.reserve(static_cast<std::size_t>(size) + kPiece);
+  if (!unknown && size > 0 && size <= largest) piece = static_cast<std::size_t>(size) + 1;
+  std::string bytes;
   while (stream) {
     const std::size_t before = bytes.size();
     if (before > largest) {
       fail("has more than " + std::to_string(largest) + " bytes; a smaller file would do");
     }
-    bytes.resize(before + kPiece);
-    stream.read(bytes.data() + before, static_cast<std::streamsize>(kPiece));
+    bytes.resize(before + piece);
+    stream.read(bytes.data() + before, static_cast<std::streamsize>(piece));
     bytes.resize(before + static_cast<std::size_t>(stream.gcount()));
+    piece = kPiece;
   }
   if (stream.bad()) fail("cannot be read to its end");
   return bytes;

@@ -243,9 +243,14 @@ Bytes npy_start(const ConstImageView& image, int height) {
 
 void append_npy_rows(Bytes& bytes, const ConstImageView& image) {
   const std::size_t texel_bytes = bytes_per_texel(image.format);
-  bytes.reserve(bytes.size() + texel_bytes * static_cast<std::size_t>(image.width) *
-                                   static_cast<std::size_t>(image.height));
+  const std::size_t row_bytes = texel_bytes * static_cast<std::size_t>(image.width);
+  bytes.reserve(bytes.size() + row_bytes * static_cast<std::size_t>(image.height));
   for (int y = 0; y < image.height; ++y) {
+    if (std::endian::native == std::endian::little) {
+      const std::byte* from = image.texels + y * image.stride_bytes;
+      bytes.insert(bytes.end(), from, from + row_bytes);
+      continue;
+    }
     switch (texel_bytes / static_cast<std::size_t>(channel_count(image.format))) {
       case 1:
         for (const std::uint8_t value : row<std::uint8_t>(image, y)) {
