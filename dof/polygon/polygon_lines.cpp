@@ -185,8 +185,10 @@ void blur_line(const PolygonLine& line, const LineField& from, LineField& to, Th
 }
 
 void blur_polygon(const PolygonLines& lines, LineField& field, ThreadPool& pool) {
-  LineField across = make_line_field(field.near, field.width, field.height, largest_reach(lines), pool);
-  LineField part = make_line_field(field.near, field.width, field.height, largest_reach(lines), pool);
+  LineField across =
+      make_line_field(field.near, field.width, field.height, largest_reach(lines), pool);
+  LineField part =
+      make_line_field(field.near, field.width, field.height, largest_reach(lines), pool);
   std::array<LineField, 2> groups{make_line_field(field.near, field.width, field.height, 0, pool),
                                   make_line_field(field.near, field.width, field.height, 0, pool)};
   across.runs = part.runs = field.runs;

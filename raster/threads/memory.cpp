@@ -1,6 +1,5 @@
 #include "raster/threads/memory.h"
 
-#include <algorithm>
 #include <memory>
 #include <mutex>
 #include <new>
@@ -24,9 +23,7 @@ void prefer_large_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::siz
 }
 
 void* allocate_rows(std::size_t bytes) {
-  void* memory = ::operator new (bytes, std::align_val_t{kRowAlignment});
-  prefer_large_pages(memory, bytes);
-  return memory;
+  return ::operator new (bytes, std::align_val_t{kRowAlignment});
 }
 
 void free_rows(void* memory) { ::operator delete (memory, std::align_val_t{kRowAlignment}); }
@@ -55,21 +52,22 @@ void* MemoryShelf::lend(std::size_t bytes) {
   std::vector<Piece>& pieces = state_->pieces;
   Piece* smallest = nullptr;  // that is large enough
   for (Piece& piece : pieces) {
-    if (piece.is_lent || piece.bytes < bytes) continue;
+    if (piece.is_lent || piece.bytes < bytes || piece.bytes / 2 > bytes) continue;
     if (smallest == nullptr || piece.bytes < smallest->bytes) smallest = &piece;
   }
   if (smallest != nullptr) {
     smallest->is_lent = true;
     return smallest->memory;
   }
-  // Where one is too small, this one stands for it from now on.
-  const auto largest =
-      std::max_element(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) {
-        return a.is_lent != b.is_lent ? a.is_lent : a.bytes < b.bytes;
-      });
-  if (largest != pieces.end() && !largest->is_lent) {
-    free_rows(largest->memory);
-    pieces.erase(largest);
+  // Where some are too small, this one stands for the largest of them from now on.
+  auto replaced = pieces.end();
+  for (auto piece = pieces.begin(); piece != pieces.end(); ++piece) {
+    if (piece->is_lent || piece->bytes > bytes) continue;
+    if (replaced == pieces.end() || piece->bytes > replaced->bytes) replaced = piece;
+  }
+  if (replaced != pieces.end()) {
+    free_rows(replaced->memory);
+    pieces.erase(replaced);
   }
   pieces.reserve(pieces.size() + 1);
   pieces.push_back({allocate_rows(bytes), bytes, true});

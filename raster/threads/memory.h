@@ -6,7 +6,9 @@
 
 namespace softfocus {
 
-/// Tells the system that memory will be used as a whole: it may give it in large pages.
+/// Tells the system that memory will be used as a whole: it may give it in large pages. They make a
+/// command faster; on a virtual machine they are slow where memory is used for the first time, and
+/// so not for all.
 void prefer_large_pages(void* memory, std::size_t bytes);
 
 inline constexpr std::size_t kRowAlignment = 64;
@@ -15,7 +17,8 @@ inline constexpr std::size_t kRowAlignment = 64;
 void* allocate_rows(std::size_t bytes);
 void free_rows(void* memory);
 
-/// Keeps what was given back, at most as much as was lent at once. Threads may share it.
+/// Keeps what was given back: of pieces that differ by less than a factor of two, at most as many
+/// as were lent at once. Threads may share it.
 class MemoryShelf {
  public:
   MemoryShelf();

@@ -20,8 +20,8 @@ using FrameBandSink = std::function<void(const ConstImageView& rows)>;
 class FrameRows {
  public:
   /// Needs a shot without a reason to be whole. Sorts the triangles. `on_stage` is told as drawing
-  /// and filtering begin, again and again, and when they are done. All must outlive it. Throws
-  /// LensError.
+  /// and filtering begin, again and again, and when they are done. Shot, pool and what `on_stage`
+  /// refers to must outlive it. Throws LensError.
   FrameRows(const Shot& shot, ThreadPool& pool,
             const std::function<void(FrameStage)>& on_stage = {});
   ~FrameRows();

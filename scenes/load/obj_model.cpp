@@ -340,7 +340,9 @@ ObjModel load_obj_model(const std::filesystem::path& file, ThreadPool* pool) {
   if (origin != glm::dvec3{0.0}) obj = parse_obj_text(text, file.string(), origin, pool);
   std::vector<std::uint32_t> place_of, doubled;
   std::vector<Triangle> triangles;
-  pool->for_each(2, [&](int task) {
+  // Few are doubled. Polygons are not taken apart in vain: that is slow.
+  const bool are_triangles = obj.corners.size() == 3 * obj.faces.size();
+  pool->for_each(are_triangles ? 2 : 1, [&](int task) {
     if (task == 0) {
       place_of = number_places(obj);
       doubled = doubled_faces(obj, place_of);
@@ -351,8 +353,9 @@ ObjModel load_obj_model(const std::filesystem::path& file, ThreadPool* pool) {
   const std::size_t face_count = obj.faces.size();
   if (!doubled.empty()) {
     drop_faces(doubled, obj.faces);
-    triangles = make_triangles(obj);
+    triangles = {};
   }
+  if (triangles.empty()) triangles = make_triangles(obj);
   check_size(triangles, obj, file);
   turn_alike(obj, place_of, triangles, *pool);
   const std::vector<glm::vec3> all_normals = complete_normals(obj, place_of, triangles);

@@ -499,6 +499,7 @@ void for_each_piece(std::vector<Piece>& pieces, ThreadPool& pool, const Work& wo
 Counts read_pieces(std::vector<Piece>& pieces, const Place& place, glm::dvec3 origin,
                    ThreadPool& pool) {
   std::vector<Counts> counts;
+  if (!pieces.empty()) pieces[0].is_counted = true;  // nothing lies before it
   try {
     for_each_piece(pieces, pool, [&](Piece& piece) { read_piece(piece, place, origin); });
     for (const Piece& piece : pieces) {
@@ -508,6 +509,7 @@ Counts read_pieces(std::vector<Piece>& pieces, const Place& place, glm::dvec3 or
     return set_before(counts, pieces);
   } catch (const NotCounted&) {
   } catch (const SceneError&) {
+    if (pieces[0].error) throw;
   }
   counts.resize(pieces.size());
   pool.for_each(static_cast<int>(pieces.size()), [&](int i) {

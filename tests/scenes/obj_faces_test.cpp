@@ -118,7 +118,7 @@ TEST_CASE("corners that are alike share a vertex of their part, whatever lies be
     std::vector<std::pair<int, int>> known[2];  // position and texture coordinate of a vertex
     std::vector<std::uint32_t> indices[2];
     for (std::size_t face = 0; face < faces.size(); ++face) {
-      const std::size_t part = face < 2 ? face : random.next() % 2;
+      const std::size_t part = face < 2 ? face : static_cast<std::size_t>(random.whole(0, 1));
       text += part == 0 ? "usemtl a\nf" : "usemtl b\nf";
       for (const int position : faces[face]) {
         const int uv = random.whole(0, 2);
