@@ -146,8 +146,9 @@ CellPicture picture_of_cell(int corners, float size, bool upside_down) {
     for (int x = 0; x < kSide; ++x) {
       int inside = 0;
       for (int i = 0; i < 256; ++i) {
-        const double across = x - kMiddle + (i % 16 + 0.5) / 16.0 - 0.5;
-        const double down = y - kMiddle + (i / 16 + 0.5) / 16.0 - 0.5;
+        const int column = i % 16, line = i / 16;
+        const double across = x - kMiddle + (column + 0.5) / 16.0 - 0.5;
+        const double down = y - kMiddle + (line + 0.5) / 16.0 - 0.5;
         bool is_in = true;
         for (int k = 0; k < corners && is_in; ++k) {
           const Point a = corner(corners, k), b = corner(corners, k + 1);
