@@ -80,7 +80,8 @@ std::vector<Side> pair_sides(std::span<const std::array<std::uint32_t, 3>> trian
   constexpr int kBand = 1 << 14;
   for_each_row(pool, static_cast<int>(place_count), kBand, [&](int place) {
     const auto at = static_cast<std::size_t>(place);
-    const auto first = edges.begin() + starts[at], last = edges.begin() + starts[at + 1];
+    const auto of_place = std::span{edges}.subspan(starts[at], starts[at + 1] - starts[at]);
+    const auto first = of_place.begin(), last = of_place.end();
     std::sort(first, last, [](const Edge& a, const Edge& b) {
       return a.to != b.to ? a.to < b.to : a.side < b.side;
     });
