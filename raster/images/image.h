@@ -33,7 +33,7 @@ struct RowDelete {
     shelf != nullptr ? shelf->take_back(memory) : free_rows(memory);
   }
 };
-/// Numbers from such a boundary on.
+/// Numbers from a boundary of kRowAlignment bytes on.
 template <class T>
 using RowMemory = std::unique_ptr<T[], RowDelete>;
 

@@ -177,7 +177,7 @@ std::vector<glm::vec3> complete_normals(const ObjText& obj,
 struct GrowingPart {
   ObjModel::Part part;
   FirstComeNumbers corners;              // of positions that have several vertices
-  std::vector<std::uint32_t> vertex_of;  // those corners
+  std::vector<std::uint32_t> vertex_of;  // by their numbers
   bool has_uvs = false;
 };
 

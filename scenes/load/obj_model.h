@@ -45,7 +45,7 @@ struct ObjModel {
 /// smoothing groups say where there are any. Faces without normals are turned to fit
 /// their neighbours (triangles_to_turn()). A face whose winding opposes the normals
 /// given for it is turned round. v of the texture coordinates, which OBJ counts
-/// upwards, is flipped. `pool`, if any, reads the text.
+/// upwards, is flipped. `pool`, if any, shares out the work.
 ObjModel load_obj_model(const std::filesystem::path& file, ThreadPool* pool = nullptr);
 
 }  // namespace softfocus
