@@ -6,9 +6,9 @@
 
 namespace softfocus {
 
-/// Tells the system that memory will be used as a whole: it may give it in large pages. They make a
-/// command faster; on a virtual machine they are slow where memory is used for the first time, and
-/// so not for all.
+/// Tells the system that memory will be used as a whole: it may give it in large pages. For images:
+/// a command at 3840x2160 takes up to a fifth less time. Filters' memory, which is larger, is
+/// slower with them at its first use on a virtual machine.
 void prefer_large_pages(void* memory, std::size_t bytes);
 
 inline constexpr std::size_t kRowAlignment = 64;
