@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cmath>
 #include <exception>
-#include <limits>
 #include <optional>
 #include <unordered_map>
 #include <unordered_set>
@@ -98,10 +97,6 @@ struct Counts {
   std::size_t lines = 0, positions = 0, uvs = 0, normals = 0;
 };
 
-// Something needs the counts of what lies before its piece.
-struct NotCounted {};
-constexpr std::size_t kNotCounted = std::numeric_limits<std::size_t>::max();
-
 // One index of a corner such as 7/-1/3; `count` is how many there are so far, from
 // which a negative one counts back.
 std::int32_t read_index(const Place& place, std::string_view text, std::size_t count,
@@ -113,7 +108,6 @@ std::int32_t read_index(const Place& place, std::string_view text, std::size_t c
                     "; a whole number from 1, or from -1 backwards, would be right");
   }
   if (index > 0) return index - 1;
-  if (count == kNotCounted) throw NotCounted{};
   const std::int64_t from_end = static_cast<std::int64_t>(count) + index;
   if (from_end < 0) {
     fail(place, std::to_string(index) + " goes back before the first " + what + "; there are " +
@@ -320,8 +314,9 @@ void read_piece(Piece& piece, Place place, glm::dvec3 origin) {
       if (!normal) tolerate(piece.wild_normals, place);
       obj.normals.push_back(normal.value_or(glm::vec3{0.0f}));
     } else if (keyword == "f") {
+      // Until it is known, 0: an index that counts back is an error then (read_pieces()).
       const auto so_far = [&](std::size_t before, std::size_t here) {
-        return piece.is_counted ? before + here : kNotCounted;
+        return piece.is_counted ? before + here : 0;
       };
       const Counts counts{0, so_far(piece.before.positions, obj.positions.size()),
                           so_far(piece.before.uvs, obj.uvs.size()),
@@ -495,7 +490,7 @@ void for_each_piece(std::vector<Piece>& pieces, ThreadPool& pool, const Work& wo
 }
 
 // Reads all; returns what there is. Few files need what lies before a piece while it is read: for a
-// message's line, and for indices that count back.
+// message's line, and for indices that count back. After an error it is counted, and read again.
 Counts read_pieces(std::vector<Piece>& pieces, const Place& place, glm::dvec3 origin,
                    ThreadPool& pool) {
   std::vector<Counts> counts;
@@ -507,7 +502,6 @@ Counts read_pieces(std::vector<Piece>& pieces, const Place& place, glm::dvec3 or
                         piece.obj.normals.size()});
     }
     return set_before(counts, pieces);
-  } catch (const NotCounted&) {
   } catch (const SceneError&) {
     if (pieces[0].error) throw;
   }

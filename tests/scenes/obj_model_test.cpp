@@ -219,6 +219,9 @@ TEST_CASE("a complaint about the text names the file, the line and what would be
         "a.obj:4: \"99999999999\" is no index of a position; a whole number from 1, or "
         "from -1 backwards, would be right");
   CHECK(contains(complaint(triangle_with("f 1 2 x\n")), "a.obj:4: \"x\" is no index"));
+  for (const std::string word : {"/1", "//1", "/"}) {
+    CHECK(contains(complaint(triangle_with("f 1 2 " + word + "\n")), "\"\" is no index of a pos"));
+  }
   CHECK(contains(complaint(triangle_with("f 1 2 3.5\n")), "a.obj:4: \"3.5\" is no index"));
   CHECK(complaint("v 0 0 0\nv 1 nan 0\n") ==
         "a.obj:2: nan is out of range; a number from -1e9 to 1e9 would be right");
