@@ -57,6 +57,23 @@ TEST_CASE("a frame by rows: the bits of make_frame(), in every unit, by any numb
   }
 }
 
+TEST_CASE("a frame by rows: each band is told to be drawn, and then to be filtered") {
+  const Scene scene = load_scene("figures", scene_search_path({}));
+  ThreadPool pool{2, Isa::baseline};
+  for (const bool filters : {false, true}) {
+    const Shot shot =
+        shot_of(scene, 0.0, 64, 200, find_method_choice(filters ? "two-pass" : "pinhole"));
+    std::string told;  // the stages' first letters
+    FrameRows rows{
+        shot, pool, [&](FrameStage stage) {
+          told += stage == FrameStage::drawing ? 'd' : stage == FrameStage::filtering ? 'f' : '.';
+        }};
+    Image band;
+    rows.make(shot.height, band, {});  // four bands; last come the rows that waited for those below
+    CHECK(told == (filters ? "d.dfdfdfdff." : "d.dddd."));
+  }
+}
+
 TEST_CASE("a frame by rows: what needs the whole picture is told") {
   const Scene scene = load_scene("figures", scene_search_path({}));
   const auto why = [&](const auto& change, Isa isa = Isa::baseline) {

@@ -115,6 +115,18 @@ TEST_CASE("a long text has the same numbers, materials and groups in pieces") {
   CHECK(obj.libraries == std::vector<std::string>{"a.mtl"});
 }
 
+TEST_CASE("an index counts back from its place in the whole text, not in its piece") {
+  const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nf -3/-1/-1 -2 -1\n";
+  const std::string comment = "#" + std::string(std::size_t{1} << 20, 'x') + "\n";
+  const ObjText obj = parse(triangle + comment + triangle);
+  REQUIRE(obj.corners.size() == 6);
+  for (std::int32_t i = 0; i < 6; ++i) {
+    CHECK(obj.corners[static_cast<std::size_t>(i)].position == i);
+  }
+  CHECK(obj.corners[3].uv == 1);
+  CHECK(obj.corners[3].normal == 1);
+}
+
 TEST_CASE("a line that goes on behind a backslash is in one piece") {
   constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
   for (const std::string end : {"\n", "\r\n"}) {
