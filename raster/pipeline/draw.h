@@ -2,6 +2,8 @@
 // A scalar draw: vertex stage, clipping, set-up, sorting into tiles, fragment stage, merge.
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cassert>
 #include <memory>
 #include <tuple>
@@ -11,6 +13,7 @@
 #include "raster/pipeline/assemble.h"
 #include "raster/pipeline/clip.h"
 #include "raster/pipeline/interpolate.h"
+#include "raster/pipeline/multisample.h"
 #include "raster/pipeline/render_pass.h"
 #include "raster/pipeline/setup.h"
 #include "raster/pipeline/stages.h"
@@ -57,7 +60,8 @@ void add_triangle(const Draw& draw, Chunk<N>& chunk, const std::array<WindowVert
                   const std::array<Varyings<N>, 3>& varyings, bool cull_unsnapped) {
   const DrawState& state = draw.state;
   if (cull_unsnapped && is_culled_unsnapped(window, state.cull, state.front_face)) return;
-  const auto setup = set_up_triangle(window, state.cull, state.front_face, draw.clip, draw.profile);
+  const auto setup = set_up_triangle(window, state.cull, state.front_face, draw.clip, draw.profile,
+                                     draw.targets.samples);
   if (!setup) return;
   bin_triangle(chunk, Triangle<N>{*setup, varyings, provoking_index(state)},
                (draw.width + kTileSize - 1) / kTileSize);
@@ -122,16 +126,60 @@ bool passes_tests(const Draw& draw, int x, int y, float depth, bool front_facing
              : depth_stencil_test(draw.state, draw.targets, x, y, depth, front_facing);
 }
 
+// Samples of a pixel, a bit each, from the lowest on.
+using Samples = unsigned;
+
+constexpr bool has_sample(Samples samples, int s) { return (samples >> s & 1u) != 0; }
+
+// Those that alpha leaves of a pixel's `count`.
+inline Samples alpha_coverage(float alpha, int count) {
+  Samples kept = 0;
+  for (int s = 0; s < count; ++s) {
+    const float least = static_cast<float>(s) / static_cast<float>(count);
+    if (!(alpha <= least)) kept |= 1u << s;
+  }
+  return kept;
+}
+
+template <class FragmentStage>
+constexpr bool is_centroid() {
+  if constexpr (requires { FragmentStage::kCentroid; }) return FragmentStage::kCentroid;
+  return false;
+}
+
+// `covered`: the samples of pixel (x, y) that the triangle covers.
 template <class Interpolator, class Draw, std::size_t N>
 void shade_fragment(const Draw& draw, const Triangle<N>& triangle, const Interpolator& interpolator,
-                    int x, int y) {
+                    int x, int y, Samples covered) {
   using FragmentStage = decltype(draw.fragment_stage);
-  const Interpolated<N> values = interpolator.at(x, y);
-  const float depth = clamped_depth(values.depth, draw.profile);
+  const int count = draw.targets.samples;
+  const std::span<const glm::ivec2> places = sample_places(count);
   const bool front = triangle.setup.front_facing;
-  // If the stage discards no fragment, the tests come before it.
-  const bool tests_come_last = FragmentStage::kDiscards && discards(draw.fragment_stage);
-  if (!tests_come_last && !passes_tests(draw, x, y, depth, front)) return;
+  Interpolated<N> values = interpolator.at(x, y);
+  const float depth = clamped_depth(values.depth, draw.profile);
+  // Those of some samples that pass.
+  const auto tested = [&](Samples samples) {
+    Samples passing = 0;
+    for (int s = 0; s < count; ++s) {
+      if (!has_sample(samples, s)) continue;
+      const float own = count == 1 ? depth
+                                   : clamped_depth(interpolator.depth(interpolator.pixel(
+                                                       x, y, places[static_cast<std::size_t>(s)])),
+                                                   draw.profile);
+      if (passes_tests(draw, x, y * count + s, own, front)) passing |= 1u << s;
+    }
+    return passing;
+  };
+  // If the stage leaves out no fragment, the tests come before it.
+  const bool covers_by_alpha = count > 1 && draw.state.alpha_to_coverage;
+  const bool tests_come_last =
+      (FragmentStage::kDiscards && discards(draw.fragment_stage)) || covers_by_alpha;
+  if (!tests_come_last) covered = tested(covered);
+  if (covered == 0) return;
+  if (is_centroid<FragmentStage>() && covered != (1u << count) - 1) {
+    const auto first = static_cast<std::size_t>(std::countr_zero(covered));
+    values.varyings = interpolator.at(x, y, places[first]).varyings;
+  }
   Fragment<N> fragment{.x = x,
                        .y = y,
                        .depth = depth,
@@ -154,15 +202,24 @@ void shade_fragment(const Draw& draw, const Triangle<N>& triangle, const Interpo
     }
   }
   const auto output = draw.fragment_stage(fragment);
-  if (tests_come_last && (output.discard || !passes_tests(draw, x, y, depth, front))) return;
+  if (tests_come_last) {
+    if (output.discard) return;
+    if (covers_by_alpha) covered &= alpha_coverage(output.colour[0].w, count);
+    covered = tested(covered);
+  }
   if (has_layers(draw.targets)) {
-    insert_into_layers(draw.targets, x, y, depth, output.colour[0], draw.profile);
+    if (covered != 0) {
+      insert_into_layers(draw.targets, x, y, depth, output.colour[0], draw.profile);
+    }
     return;
   }
   for (std::size_t i = 0; i < output.colour.size(); ++i) {
-    if (draw.targets.colour[i] != nullptr) {
-      write_colour(draw.state.colour[i], *draw.targets.colour[i], x, y, output.colour[i],
-                   draw.profile);
+    if (draw.targets.colour[i] == nullptr) continue;
+    for (int s = 0; s < count; ++s) {
+      if (has_sample(covered, s)) {
+        write_colour(draw.state.colour[i], *draw.targets.colour[i], x, y * count + s,
+                     output.colour[i], draw.profile);
+      }
     }
   }
 }
@@ -173,10 +230,21 @@ void shade_triangle(const Draw& draw, const Triangle<N>& triangle, const Rectang
   const Rectangle area = intersection(tile, setup.bounds);
   const Interpolator interpolator{triangle, draw.profile,
                                   decltype(draw.fragment_stage)::kInterpolation};
+  const std::span<const glm::ivec2> places = sample_places(draw.targets.samples);
+  std::array<Span, kMaxSamples> spans;
   for (int y = area.y_begin; y < area.y_end; ++y) {
-    const Span span = covered_span(setup, y, area.x_begin, area.x_end);
-    for (int x = span.x_begin; x < span.x_end; ++x) {
-      shade_fragment(draw, triangle, interpolator, x, y);
+    Span row{area.x_end, area.x_begin};
+    for (std::size_t s = 0; s < places.size(); ++s) {
+      spans[s] = covered_span(setup, y, area.x_begin, area.x_end, places[s]);
+      if (spans[s].x_begin >= spans[s].x_end) continue;
+      row = {std::min(row.x_begin, spans[s].x_begin), std::max(row.x_end, spans[s].x_end)};
+    }
+    for (int x = row.x_begin; x < row.x_end; ++x) {
+      Samples covered = 0;
+      for (std::size_t s = 0; s < places.size(); ++s) {
+        if (spans[s].x_begin <= x && x < spans[s].x_end) covered |= 1u << s;
+      }
+      if (covered != 0) shade_fragment(draw, triangle, interpolator, x, y, covered);
     }
   }
 }
@@ -236,6 +304,8 @@ void draw(RenderPass& pass, const DrawState& state, std::span<const std::uint32_
   assert(pass.profile.coverage == Coverage::edge_functions ||
          pass.profile.attributes != AttributeSetup::exact_barycentric);
   assert(!has_layers(pass.targets) || can_peel(pass.targets, state));
+  assert(pass.targets.samples == 1 ||
+         (pass.profile.coverage == Coverage::edge_functions && !has_layers(pass.targets)));
   using Recorded = draw_detail::Recorded<VertexStage, FragmentStage, N>;
 
   const Rectangle target = target_area(pass.targets);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <glm/vec2.hpp>
 #include <variant>
 
 #include "raster/numbers/profile.h"
@@ -27,10 +28,11 @@ struct Interpolated {
   Varyings<N> varyings;
 };
 
-/// All of a pixel.
+/// All of a pixel, at a place from its centre in 1/256 pixel.
 template <std::size_t N, class Interpolator>
-Interpolated<N> interpolated(const Interpolator& interpolator, int x, int y) {
-  const auto pixel = interpolator.pixel(x, y);
+Interpolated<N> interpolated(const Interpolator& interpolator, int x, int y,
+                             const glm::ivec2& place) {
+  const auto pixel = interpolator.pixel(x, y, place);
   Interpolated<N> result;
   result.depth = interpolator.depth(pixel);
   for (std::size_t i = 0; i < N; ++i) result.varyings[i] = interpolator.varying(pixel, i);
@@ -64,10 +66,10 @@ struct BarycentricInterpolator {
     float inverse_w;
   };
 
-  Pixel pixel(int x, int y) const {
+  Pixel pixel(int x, int y, const glm::ivec2& place = {}) const {
     const auto& v = triangle.setup.vertices;
     const auto weight = [&](std::size_t i) {
-      return static_cast<float>(edge_at(functions.edges[i], x, y)) * inverse_area;
+      return static_cast<float>(edge_at(functions.edges[i], x, y, place)) * inverse_area;
     };
     const float l0 = weight(0);
     const float l1 = weight(1);
@@ -96,7 +98,9 @@ struct BarycentricInterpolator {
     return triangle.varyings[triangle.provoking][i];
   }
 
-  Interpolated<N> at(int x, int y) const { return interpolated<N>(*this, x, y); }
+  Interpolated<N> at(int x, int y, const glm::ivec2& place = {}) const {
+    return interpolated<N>(*this, x, y, place);
+  }
 
  private:
   static float blend(float a0, float a1, float a2, float w1, float w2) {
@@ -105,7 +109,7 @@ struct BarycentricInterpolator {
 };
 
 /// By planes over the window (planes.h). A perspective varying is the plane of a / w divided by
-/// that of 1 / w.
+/// that of 1 / w, which is the centre's wherever the varying is wanted, as in llvmpipe.
 template <class Planes, std::size_t N>
 struct PlaneInterpolator {
   const std::array<Interpolation, N>& kinds;
@@ -139,24 +143,29 @@ struct PlaneInterpolator {
 
   struct Pixel {
     int x, y;
+    glm::ivec2 place;
     float inverse_w;
   };
 
-  Pixel pixel(int x, int y) const { return {x, y, planes.at(inverse_w, x, y)}; }
+  Pixel pixel(int x, int y, const glm::ivec2& place = {}) const {
+    return {x, y, place, planes.at(inverse_w, x, y)};
+  }
 
-  float depth(const Pixel& at) const { return planes.at(depth_plane, at.x, at.y); }
+  float depth(const Pixel& at) const { return planes.at(depth_plane, at.x, at.y, at.place); }
 
   float varying(const Pixel& at, std::size_t i) const {
     switch (kinds[i]) {
       case Interpolation::perspective:
-        return Planes::divide(planes.at(varyings[i], at.x, at.y), at.inverse_w);
-      case Interpolation::linear: return planes.at(varyings[i], at.x, at.y);
+        return Planes::divide(planes.at(varyings[i], at.x, at.y, at.place), at.inverse_w);
+      case Interpolation::linear: return planes.at(varyings[i], at.x, at.y, at.place);
       case Interpolation::flat: break;
     }
     return varyings[i].at_origin;
   }
 
-  Interpolated<N> at(int x, int y) const { return interpolated<N>(*this, x, y); }
+  Interpolated<N> at(int x, int y, const glm::ivec2& place = {}) const {
+    return interpolated<N>(*this, x, y, place);
+  }
 };
 
 }  // namespace softfocus

@@ -27,11 +27,14 @@ inline constexpr std::size_t kMaxLayers = 4;
 /// Of fragments at one depth the first submitted is the nearest. Such a pass has no other targets,
 /// colour of RGBA16F, and draws that test for less and write depth, without stencil, blending or
 /// masks.
+///
+/// With 4 or 8 samples all are multisampled images (multisample.h), and the pass does not peel.
 struct RenderTargets {
   std::array<Image*, kMaxColourTargets> colour{};
   Image* depth = nullptr;
   Image* stencil = nullptr;
   std::array<LayerTarget, kMaxLayers - 1> behind{};
+  int samples = 1;
 };
 
 /// 1, or how many layers a pass peels.

@@ -1,9 +1,11 @@
 #pragma once
 // Attributes as planes over the window, a(x, y) = at_origin + x * per_x + y * per_y at pixel
-// (x, y): set up from unsnapped positions and rounded as in two drivers of Mesa 22.3.
+// (x, y): set up from unsnapped positions and rounded as in two drivers of Mesa 22.3. Of several
+// samples a pixel the origin is the window's corner, of one it is the first pixel's centre.
 
 #include <array>
 #include <cstddef>
+#include <glm/vec2.hpp>
 #include <utility>
 
 #include "raster/numbers/lerp.h"
@@ -23,7 +25,8 @@ struct Plane {
 /// fused as the profile's `interpolation` says, products of set-up never.
 struct PlanesFromOrigin {
   std::array<std::size_t, 3> order;
-  float x0, y0;  // from the centre of pixel (0, 0)
+  float x0, y0;  // from the origin
+  float centre;  // of pixel (0, 0), from there
   float dx01_over_area, dy01_over_area;
   float dx20_over_area, dy20_over_area;
   Contraction contraction;
@@ -39,8 +42,9 @@ struct PlanesFromOrigin {
     const float dx20 = v2.x - v0.x;
     const float dy20 = v2.y - v0.y;
     const float one_over_area = 1.0f / (dx01 * dy20 - dx20 * dy01);
-    x0 = v0.x - 0.5f;
-    y0 = v0.y - 0.5f;
+    centre = setup.samples == 1 ? 0.0f : 0.5f;
+    x0 = v0.x - (0.5f - centre);
+    y0 = v0.y - (0.5f - centre);
     dx01_over_area = dx01 * one_over_area;
     dy01_over_area = dy01 * one_over_area;
     dx20_over_area = dx20 * one_over_area;
@@ -56,17 +60,22 @@ struct PlanesFromOrigin {
     return {a0 - (per_x * x0 + per_y * y0), per_x, per_y};
   }
 
-  float at(const Plane& p, int x, int y) const {
-    const float along_x = multiply_add(p.per_x, static_cast<float>(x), p.at_origin, contraction);
-    return multiply_add(p.per_y, static_cast<float>(y), along_x, contraction);
+  /// `place`: from the pixel's centre, in 1/256 pixel.
+  float at(const Plane& p, int x, int y, const glm::ivec2& place = {}) const {
+    const auto from_origin = [&](int pixel, int from_centre) {
+      return static_cast<float>(pixel) + (centre + static_cast<float>(from_centre) / 256.0f);
+    };
+    const float along_x = multiply_add(p.per_x, from_origin(x, place.x), p.at_origin, contraction);
+    return multiply_add(p.per_y, from_origin(y, place.y), along_x, contraction);
   }
 
   /// A perspective varying, from the planes of a / w and 1 / w.
   static float divide(float over_w, float inverse_w) { return over_w * (1.0f / inverse_w); }
 };
 
-/// softpipe. The vertices are sorted from top to bottom. The plane is evaluated at the upper left
-/// pixel of a 2x2 block (even x, even y) and stepped to the other three.
+/// softpipe, which has one sample a pixel. The vertices are sorted from top to bottom. The plane is
+/// evaluated at the upper left pixel of a 2x2 block (even x, even y) and stepped to the other
+/// three.
 struct PlanesByQuad {
   std::array<std::size_t, 3> order;
   float x0, y0;                      // from the centre of pixel (0, 0)
@@ -97,7 +106,7 @@ struct PlanesByQuad {
     return {a0 - (per_x * x0 + per_y * y0), per_x, per_y};
   }
 
-  float at(const Plane& p, int x, int y) const {
+  float at(const Plane& p, int x, int y, const glm::ivec2& = {}) const {
     float value =
         (p.at_origin + p.per_x * static_cast<float>(x & ~1)) + p.per_y * static_cast<float>(y & ~1);
     if ((x & 1) != 0) value += p.per_x;

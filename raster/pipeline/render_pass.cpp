@@ -16,14 +16,17 @@ constexpr std::size_t kTexelBytes = bytes_per_texel(Format::rgba16f);
 
 // The upper left texel of an area of an RGBA16F image. AnyImage may be const.
 template <class AnyImage>
-auto* first_texel(AnyImage& image, const Rectangle& area) {
-  return image.bytes.data() + static_cast<std::size_t>(area.y_begin) * image.stride_bytes +
+auto* first_texel(AnyImage& image, const Rectangle& area, int samples = 1) {
+  return image.bytes.data() +
+         static_cast<std::size_t>(area.y_begin * samples) * image.stride_bytes +
          static_cast<std::size_t>(area.x_begin) * kTexelBytes;
 }
 
 void clear_area(const RenderPass& pass, Image* image, const Rectangle& area, glm::vec4 value) {
   if (image == nullptr) return;
-  clear_image(*image, area.x_begin, area.y_begin, area.x_end, area.y_end, value, pass.profile);
+  const int rows = pass.targets.samples;  // of a row of pixels
+  clear_image(*image, area.x_begin, area.y_begin * rows, area.x_end, area.y_end * rows, value,
+              pass.profile);
 }
 
 void clear_targets(const RenderPass& pass, const Rectangle& area) {
@@ -121,19 +124,28 @@ class TileDrawing {
           kTexelBytes * static_cast<std::size_t>(area_.x_end - area_.x_begin);
       return;
     }
+    const auto samples = static_cast<std::size_t>(pass_.targets.samples);
     for (std::size_t i = 0; i < memory_->layers; ++i) {
-      Image& target = *layer_target(pass_.targets, i).colour;
-      memory_->layer(i).texels = first_texel(target, area_);
-      memory_->layer(i).stride_bytes = target.stride_bytes;
+      Image& target =
+          *(samples > 1 ? pass_.targets.colour[0] : layer_target(pass_.targets, i).colour);
+      const std::size_t sample = samples > 1 ? i : 0;
+      memory_->layer(i).texels =
+          first_texel(target, area_, pass_.targets.samples) + sample * target.stride_bytes;
+      memory_->layer(i).stride_bytes = samples * target.stride_bytes;
     }
   }
 
   void shade() {
+    if (memory_->has_samples) {
+      find_mixed(pass_.isa, *memory_);
+      list_further(*memory_);
+    }
     if (!is_cleared_ && pass_.clear_colour) {
       clear_unseen(pass_.isa, *memory_, *pass_.clear_colour, pass_.profile);
     }
     is_cleared_ = true;
     shade_tile(*memory_);
+    if (memory_->has_samples) copy_to_samples(*memory_);
   }
 
   void leave_lanes(bool needs_depth) {
@@ -179,7 +191,7 @@ Rectangle target_area(const RenderTargets& targets) {
     if (colour != nullptr) first = colour;
   }
   assert(first != nullptr);
-  return {0, 0, first->width, first->height};
+  return {0, 0, first->width, first->height / targets.samples};
 }
 
 void draw_tile(const RenderPass& pass, const TileLists& lists, int tile, TileMemory& memory) {
@@ -189,6 +201,7 @@ void draw_tile(const RenderPass& pass, const TileLists& lists, int tile, TileMem
 void draw_tile_aside(const RenderPass& pass, const TileLists& lists, int tile, TileMemory& memory,
                      std::byte* texels) {
   assert(pass.clear_colour && pass.clear_depth && !has_layers(pass.targets));
+  assert(pass.targets.samples == 1);
   const std::span<const TileWork> work = work_of_tile(lists, tile);
   const Rectangle area = tile_area(lists, tile);
   const int width = area.x_end - area.x_begin, height = area.y_end - area.y_begin;

@@ -5,15 +5,18 @@
 #include <cmath>
 
 #include "raster/numbers/fixed_point.h"
+#include "raster/pipeline/multisample.h"
 
 namespace softfocus {
 namespace {
 
 // In 1/256 pixel from the centre of pixel (0, 0), as all positions here; a multiple of 2^-bits
 // pixels.
-std::int64_t snap(float window_coordinate, int bits) {
-  const float steps = (window_coordinate - 0.5f) * static_cast<float>(1 << bits);
-  return std::int64_t{std::lrint(steps)} * (1 << (kSubpixelBits - bits));
+std::int64_t snap(float window_coordinate, int bits, int samples) {
+  const float from = samples == 1 ? 0.5f : 0.0f;
+  const float steps = (window_coordinate - from) * static_cast<float>(1 << bits);
+  return std::int64_t{std::lrint(steps)} * (1 << (kSubpixelBits - bits)) -
+         (samples == 1 ? 0 : kSubpixelOne / 2);
 }
 
 int floor_to_pixel(std::int64_t snapped) { return static_cast<int>(snapped >> kSubpixelBits); }
@@ -24,13 +27,13 @@ int ceil_to_pixel(std::int64_t snapped) {
 }  // namespace
 
 std::optional<EdgeFunctions> make_edge_functions(const std::array<WindowVertex, 3>& vertices,
-                                                 const Profile& profile) {
+                                                 const Profile& profile, int samples) {
   assert(profile.subpixel_bits >= 4 && profile.subpixel_bits <= kSubpixelBits);
   std::array<std::int64_t, 3> x{};
   std::array<std::int64_t, 3> y{};
   for (std::size_t i = 0; i < 3; ++i) {
-    x[i] = snap(vertices[i].x, profile.subpixel_bits);
-    y[i] = snap(vertices[i].y, profile.subpixel_bits);
+    x[i] = snap(vertices[i].x, profile.subpixel_bits, samples);
+    y[i] = snap(vertices[i].y, profile.subpixel_bits, samples);
   }
   const std::int64_t area = (x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0]);
   if (area == 0) return std::nullopt;
@@ -41,8 +44,9 @@ std::optional<EdgeFunctions> make_edge_functions(const std::array<WindowVertex, 
   functions.area = functions.clockwise ? area : -area;
   const auto [x_min, x_max] = std::minmax({x[0], x[1], x[2]});
   const auto [y_min, y_max] = std::minmax({y[0], y[1], y[2]});
-  functions.bounds = {ceil_to_pixel(x_min), ceil_to_pixel(y_min), floor_to_pixel(x_max) + 1,
-                      floor_to_pixel(y_max) + 1};
+  const int reach = sample_reach(samples);
+  functions.bounds = {ceil_to_pixel(x_min - reach), ceil_to_pixel(y_min - reach),
+                      floor_to_pixel(x_max + reach) + 1, floor_to_pixel(y_max + reach) + 1};
 
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t from = (i + 1) % 3;
@@ -65,11 +69,12 @@ std::optional<EdgeFunctions> make_edge_functions(const std::array<WindowVertex, 
   return functions;
 }
 
-Span covered_span(const EdgeFunctions& functions, int y, int x_begin, int x_end) {
+Span covered_span(const EdgeFunctions& functions, int y, int x_begin, int x_end,
+                  const glm::ivec2& place) {
   const auto& edges = functions.edges;
-  std::int64_t e0 = edge_at(edges[0], x_begin, y);
-  std::int64_t e1 = edge_at(edges[1], x_begin, y);
-  std::int64_t e2 = edge_at(edges[2], x_begin, y);
+  std::int64_t e0 = edge_at(edges[0], x_begin, y, place);
+  std::int64_t e1 = edge_at(edges[1], x_begin, y, place);
+  std::int64_t e2 = edge_at(edges[2], x_begin, y, place);
   const auto covered = [&] {
     return inside(edges[0], e0) && inside(edges[1], e1) && inside(edges[2], e2);
   };
@@ -202,10 +207,11 @@ bool is_drawable(const WindowVertex& v) {
 
 std::optional<TriangleSetup> set_up_triangle(const std::array<WindowVertex, 3>& vertices, Cull cull,
                                              FrontFace front_face, const Rectangle& clip,
-                                             const Profile& profile) {
+                                             const Profile& profile, int samples) {
   if (!std::all_of(vertices.begin(), vertices.end(), is_drawable)) return std::nullopt;
   TriangleSetup setup{};
   setup.vertices = vertices;
+  setup.samples = samples;
   const auto take = [&](const auto& coverage) {
     if (!coverage) return false;
     setup.coverage = *coverage;
@@ -214,7 +220,7 @@ std::optional<TriangleSetup> set_up_triangle(const std::array<WindowVertex, 3>& 
     return setup.bounds.x_begin < setup.bounds.x_end && setup.bounds.y_begin < setup.bounds.y_end;
   };
   const bool covers = profile.coverage == Coverage::edge_functions
-                          ? take(make_edge_functions(vertices, profile))
+                          ? take(make_edge_functions(vertices, profile, samples))
                           : take(make_scanlines(vertices));
   if (!covers) return std::nullopt;
 
@@ -229,9 +235,10 @@ bool is_culled_unsnapped(const std::array<WindowVertex, 3>& vertices, Cull cull,
   return is_culled(front_face == FrontFace::clockwise ? area > 0.0f : area < 0.0f, cull);
 }
 
-Span covered_span(const TriangleSetup& setup, int y, int x_begin, int x_end) {
+Span covered_span(const TriangleSetup& setup, int y, int x_begin, int x_end,
+                  const glm::ivec2& place) {
   if (const auto* functions = std::get_if<EdgeFunctions>(&setup.coverage)) {
-    return covered_span(*functions, y, x_begin, x_end);
+    return covered_span(*functions, y, x_begin, x_end, place);
   }
   return covered_span(std::get<Scanlines>(setup.coverage), y, x_begin, x_end);
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 #include <optional>
 #include <variant>
@@ -64,11 +65,13 @@ struct EdgeFunctions {
   std::array<EdgeFunction, 3> edges;
   std::int64_t area;  ///< twice the triangle's, in 1/65536 of a square pixel; positive
   bool clockwise;     ///< the order of the vertices, as seen in the picture
-  Rectangle bounds;   ///< the pixels whose centres the bounding box holds
+  Rectangle bounds;   ///< the pixels whose samples the bounding box can hold
 };
 
-inline std::int64_t edge_at(const EdgeFunction& edge, int x, int y) {
-  return edge.at_origin + x * edge.per_x + y * edge.per_y;
+/// `place`: from the pixel's centre, in 1/256 pixel.
+inline std::int64_t edge_at(const EdgeFunction& edge, int x, int y, const glm::ivec2& place = {}) {
+  return edge.at_origin + x * edge.per_x + y * edge.per_y +
+         (place.x * edge.per_x + place.y * edge.per_y) / 256;
 }
 
 inline bool inside(const EdgeFunction& edge, std::int64_t value) {
@@ -76,12 +79,15 @@ inline bool inside(const EdgeFunction& edge, std::int64_t value) {
 }
 
 /// Positions are snapped by round-to-nearest-even of (window - 0.5) * 2^subpixel_bits,
-/// both operations in binary32. Needs |x|, |y| <= 2^20. Nothing for a triangle of no area.
+/// both operations in binary32; with more samples than 1, of window * 2^subpixel_bits, as llvmpipe
+/// does. Needs |x|, |y| <= 2^20. Nothing for a triangle of no area.
 std::optional<EdgeFunctions> make_edge_functions(const std::array<WindowVertex, 3>& vertices,
-                                                 const Profile& profile);
+                                                 const Profile& profile, int samples = 1);
 
 /// The covered pixels of row y among x_begin <= x < x_end: one span, as a triangle is convex.
-Span covered_span(const EdgeFunctions& functions, int y, int x_begin, int x_end);
+/// `place`: of the sample that is looked at, from a pixel's centre.
+Span covered_span(const EdgeFunctions& functions, int y, int x_begin, int x_end,
+                  const glm::ivec2& place = {});
 
 // Coverage by spans between floating-point edges, as in Mesa's softpipe (22.3, sp_setup.c). The
 // triangle is cut at its middle vertex into an upper and a lower half; each half is filled row by
@@ -128,13 +134,14 @@ struct TriangleSetup {
   bool clockwise;  ///< the order of the vertices, as seen in the picture
   bool front_facing;
   Rectangle bounds;  ///< holds all covered pixels; lies within the clip
+  int samples;       ///< of a pixel
 };
 
 /// Nothing for a triangle that has no area, is culled, lies outside `clip`, or has a coordinate
 /// that is not finite. `clip` lies within the target.
 std::optional<TriangleSetup> set_up_triangle(const std::array<WindowVertex, 3>& vertices, Cull cull,
                                              FrontFace front_face, const Rectangle& clip,
-                                             const Profile& profile);
+                                             const Profile& profile, int samples = 1);
 
 /// Culling by unsnapped positions; no area counts as a back face. Mesa's drivers do this, too, to
 /// all triangles that they send through their clipping stages.
@@ -142,6 +149,7 @@ bool is_culled_unsnapped(const std::array<WindowVertex, 3>& vertices, Cull cull,
                          FrontFace front_face);
 
 /// The covered pixels of row y among x_begin <= x < x_end. Row and pixels lie in the bounds.
-Span covered_span(const TriangleSetup& setup, int y, int x_begin, int x_end);
+Span covered_span(const TriangleSetup& setup, int y, int x_begin, int x_end,
+                  const glm::ivec2& place = {});
 
 }  // namespace softfocus

@@ -140,6 +140,8 @@ struct DrawState {
   std::optional<Rectangle> scissor;
   std::optional<DepthState> depth = DepthState{};
   std::optional<StencilState> stencil;
+  /// Of n samples sample s is left out unless the first colour's alpha is above s / n, or NaN.
+  bool alpha_to_coverage = false;
   std::array<ColourState, kMaxColourTargets> colour{};
 };
 

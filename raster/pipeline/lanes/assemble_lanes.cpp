@@ -10,6 +10,7 @@
 
 #include "raster/numbers/fixed_point.h"
 #include "raster/pipeline/clip.h"
+#include "raster/pipeline/multisample.h"
 
 #define SOFTFOCUS_KERNELS "raster/pipeline/lanes/assemble_lanes.cpp"
 #include "raster/lanes/for_each_isa.inl"
@@ -55,7 +56,7 @@ SOFTFOCUS_INLINE void swap_where(Mask mask, Floats& a, Floats& b) {
 
 // The plane of the depths, as PlanesFromOrigin makes it.
 SOFTFOCUS_INLINE Corners depth_plane(Corners x, Corners y, Corners depth, Mask clockwise,
-                                     std::size_t provoking) {
+                                     std::size_t provoking, float origin) {
   const std::size_t other = provoking == 0 ? 2 : 0;
   swap_where(clockwise, x[1], x[other]);
   swap_where(clockwise, y[1], y[other]);
@@ -69,7 +70,7 @@ SOFTFOCUS_INLINE Corners depth_plane(Corners x, Corners y, Corners depth, Mask c
   const Floats da20 = depth[2] - depth[0];
   const Floats per_x = da01 * (dy20 * one_over_area) - da20 * (dy01 * one_over_area);
   const Floats per_y = da20 * (dx01 * one_over_area) - da01 * (dx20 * one_over_area);
-  return {depth[0] - (per_x * (x[0] - 0.5f) + per_y * (y[0] - 0.5f)), per_x, per_y};
+  return {depth[0] - (per_x * (x[0] - origin) + per_y * (y[0] - origin)), per_x, per_y};
 }
 
 SOFTFOCUS_INLINE Ints smallest(const IntCorners& v) { return smaller(smaller(v[0], v[1]), v[2]); }
@@ -79,22 +80,33 @@ struct EdgeLanes {
   IntCorners at_origin, per_x, per_y, threshold;
 };
 
-SOFTFOCUS_INLINE Mask covers(const EdgeLanes& edges, int x, int y) {
-  Ints all_inside{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    all_inside |= edges.at_origin[i] + x * edges.per_x[i] + y * edges.per_y[i] - edges.threshold[i];
+// Whether a sample of a pixel is covered.
+SOFTFOCUS_INLINE Mask covers(const EdgeLanes& edges, std::span<const glm::ivec2> places, int x,
+                             int y) {
+  Mask covered{};
+  for (const glm::ivec2& place : places) {
+    Ints all_inside{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      // The slopes are multiples of 256.
+      all_inside |=
+          edges.at_origin[i] + (x * kSubpixelOne + place.x) * (edges.per_x[i] >> kSubpixelBits) +
+          (y * kSubpixelOne + place.y) * (edges.per_y[i] >> kSubpixelBits) - edges.threshold[i];
+    }
+    covered |= all_inside >= 0;
   }
-  return all_inside >= 0;
+  return covered;
 }
 
-// Triangles between the pixels' centres, as are half of all that are as small as a pixel.
-// Looks only at bounds of at most 2x2 pixels.
-SOFTFOCUS_INLINE Mask covers_nothing(const EdgeLanes& edges, Ints width, Ints height) {
+// Triangles between the pixels' samples, as of one sample are half of all that are as small as a
+// pixel. Looks only at bounds of at most 2x2 pixels.
+SOFTFOCUS_INLINE Mask covers_nothing(const EdgeLanes& edges, std::span<const glm::ivec2> places,
+                                     Ints width, Ints height) {
   const Mask in_second_column = width > 1;
   const Mask in_second_row = height > 1;
-  const Mask covers_any = covers(edges, 0, 0) | (in_second_column & covers(edges, 1, 0)) |
-                          (in_second_row & covers(edges, 0, 1)) |
-                          (in_second_column & in_second_row & covers(edges, 1, 1));
+  const Mask covers_any = covers(edges, places, 0, 0) |
+                          (in_second_column & covers(edges, places, 1, 0)) |
+                          (in_second_row & covers(edges, places, 0, 1)) |
+                          (in_second_column & in_second_row & covers(edges, places, 1, 1));
   return (width <= 2) & (height <= 2) & ~covers_any;
 }
 
@@ -150,6 +162,8 @@ void assemble(const AssembleJob& job, LaneChunk& chunk) {
   constexpr std::int32_t kClipBits = (1 << 6) - 1;
   const VertexStore& vertices = job.vertices;
   const bool planes = job.profile->attributes == AttributeSetup::planes_from_origin;
+  const std::span<const glm::ivec2> places = sample_places(job.samples);
+  const int reach = sample_reach(job.samples);
   TriangleColumns columns;
 
   for (std::size_t begin = job.begin; begin < job.end; begin += kLanes) {
@@ -176,10 +190,10 @@ void assemble(const AssembleJob& job, LaneChunk& chunk) {
     IntCorners y = gather_corners(vertices.snapped_y, index, kept);
     const Ints x_min = smallest(x), x_max = largest(x);
     const Ints y_min = smallest(y), y_max = largest(y);
-    const Ints x_begin = larger((x_min + 255) >> kSubpixelBits, splat(job.clip.x_begin));
-    const Ints y_begin = larger((y_min + 255) >> kSubpixelBits, splat(job.clip.y_begin));
-    const Ints x_end = smaller((x_max >> kSubpixelBits) + 1, splat(job.clip.x_end));
-    const Ints y_end = smaller((y_max >> kSubpixelBits) + 1, splat(job.clip.y_end));
+    const Ints x_begin = larger((x_min - reach + 255) >> kSubpixelBits, splat(job.clip.x_begin));
+    const Ints y_begin = larger((y_min - reach + 255) >> kSubpixelBits, splat(job.clip.y_begin));
+    const Ints x_end = smaller(((x_max + reach) >> kSubpixelBits) + 1, splat(job.clip.x_end));
+    const Ints y_end = smaller(((y_max + reach) >> kSubpixelBits) + 1, splat(job.clip.y_end));
     kept &= (x_begin < x_end) & (y_begin < y_end);
     const Mask small = (x_max - x_min <= kSmallExtent) & (y_max - y_min <= kSmallExtent);
     slow |= kept & ~small;
@@ -221,7 +235,7 @@ void assemble(const AssembleJob& job, LaneChunk& chunk) {
       const Mask owns = (dy < 0) | ((dy == 0) & level_owns);
       edges.threshold[i] = owns + 1;
     }
-    kept &= ~covers_nothing(edges, x_end - x_begin, y_end - y_begin);
+    kept &= ~covers_nothing(edges, places, x_end - x_begin, y_end - y_begin);
     const unsigned kept_bits = lane_bits(kept);
     if ((kept_bits | lane_bits(slow)) == 0) continue;
 
@@ -242,9 +256,9 @@ void assemble(const AssembleJob& job, LaneChunk& chunk) {
       columns.clockwise = lane_bits(clockwise);
 
       const Corners depth = gather_corners(vertices.depth, index, kept);
-      const Corners fields = planes
-                                 ? depth_plane(window_x, window_y, depth, clockwise, job.provoking)
-                                 : Corners{depth[0], depth[1] - depth[0], depth[2] - depth[0]};
+      const Corners fields = planes ? depth_plane(window_x, window_y, depth, clockwise,
+                                                  job.provoking, job.samples == 1 ? 0.5f : 0.0f)
+                                    : Corners{depth[0], depth[1] - depth[0], depth[2] - depth[0]};
       for (std::size_t i = 0; i < 3; ++i) {
         store_to(columns.depth[i], fields[i]);
       }

@@ -22,6 +22,7 @@ struct AssembleJob {
   bool cull_unsnapped;
   std::size_t provoking;  ///< the vertex that gives flat varyings their value: 0 or 2
   Rectangle clip;
+  int samples;  ///< of a pixel
   const Profile* profile;
   /// Adds a triangle that is large or has to be clipped.
   void (*add_slowly)(const AssembleJob& job, LaneChunk& chunk, std::size_t triangle);

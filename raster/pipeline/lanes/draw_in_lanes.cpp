@@ -17,6 +17,7 @@ bool can_draw_in_lanes(const RenderPass& pass, const DrawState& state) {
          pass.profile.attributes != AttributeSetup::planes_by_quad && one_target &&
          targets.depth != nullptr && state.depth &&
          !(state.stencil && targets.stencil != nullptr) && !state.scissor && !colour.blend &&
+         !(state.alpha_to_coverage && targets.samples > 1) &&
          colour.write == std::array{true, true, true, true};
 }
 
@@ -43,9 +44,10 @@ void assemble_chunk(const LaneDraw& draw, std::uint32_t number, LaneChunk& chunk
       state.cull != Cull::none && draw.profile.clipping == Clipping::mesa;
   for (std::size_t begin = chunk_begin; begin < chunk_end; begin += kBatchTriangles) {
     AssembleJob job{
-        draw.store,  draw.indices,     begin,      std::min(begin + kBatchTriangles, chunk_end),
-        state.cull,  state.front_face, false,      provoking_index(state),
-        draw.target, &draw.profile,    add_slowly, context};
+        draw.store,  draw.indices,     begin,         std::min(begin + kBatchTriangles, chunk_end),
+        state.cull,  state.front_face, false,         provoking_index(state),
+        draw.target, draw.samples,     &draw.profile, add_slowly,
+        context};
     job.cull_unsnapped = may_cull_unsnapped && any_vertex_outside(job);
     assemble_lanes(draw.isa, job, chunk);
   }
@@ -56,8 +58,8 @@ void add_triangle(const LaneDraw& draw, LaneChunk& chunk, const std::array<Windo
                   const std::array<std::span<const float>, 3>& varyings, bool cull_unsnapped) {
   const DrawState& state = draw.state;
   if (cull_unsnapped && is_culled_unsnapped(window, state.cull, state.front_face)) return;
-  const auto setup =
-      set_up_triangle(window, state.cull, state.front_face, draw.target, draw.profile);
+  const auto setup = set_up_triangle(window, state.cull, state.front_face, draw.target,
+                                     draw.profile, draw.samples);
   if (!setup) return;
   LaneTriangle& t = add_set_up_triangle(chunk, *setup, provoking_index(state), draw.profile);
   for (std::size_t i = 0; i < 3; ++i) {

@@ -25,6 +25,7 @@ struct VertexJob {
   std::uint32_t end;
   int width;  ///< of the target
   int height;
+  int samples;  ///< of a pixel
   const Profile* profile;
 };
 
@@ -32,7 +33,8 @@ struct VertexJob {
 struct FragmentJob {
   std::size_t provoking;
   const Profile* profile;
-  std::size_t layer;  ///< of the tile
+  int samples;        ///< of a pixel
+  std::size_t layer;  ///< of the tile; of several samples, 1: all but the first
 };
 
 /// The stages of a draw, compiled for a vector unit (vertex_lanes.inl, shade_lanes.inl).
@@ -49,7 +51,8 @@ struct LaneStages {
 };
 
 /// Whether the kernels can carry out a draw. They leave out draws that need fragments in order
-/// (blending, stencil), rare ones (scissor, masks, several targets), and softpipe's.
+/// (blending, stencil), rare ones (scissor, masks, several targets, coverage by alpha), and
+/// softpipe's.
 bool can_draw_in_lanes(const RenderPass& pass, const DrawState& state);
 
 namespace draw_detail {
@@ -60,6 +63,7 @@ struct LaneDraw {
   Profile profile;
   Isa isa;
   Rectangle target;
+  int samples;
   std::span<const std::uint32_t> indices;
   VertexStore store;
 };
@@ -103,11 +107,12 @@ struct RecordedInLanes {
   }
 
   FragmentJob fragment_job(std::size_t layer) const {
-    return {provoking_index(draw.state), &draw.profile, layer};
+    return {provoking_index(draw.state), &draw.profile, draw.samples, layer};
   }
 
   VertexJob vertex_job(std::uint32_t begin, std::uint32_t end) const {
-    return {draw.store, begin, end, draw.target.x_end, draw.target.y_end, &draw.profile};
+    return {draw.store,        begin,        end,          draw.target.x_end,
+            draw.target.y_end, draw.samples, &draw.profile};
   }
 };
 
@@ -155,7 +160,7 @@ void draw_in_lanes(RenderPass& pass, const DrawState& state, std::span<const std
   assert(discards(fragment_stage) == keeps);
   using Recorded = draw_detail::RecordedInLanes<VertexStage, FragmentStage>;
   const draw_detail::LaneDraw draw{
-      state, pass.profile, pass.isa, target_area(pass.targets), indices, {}};
+      state, pass.profile, pass.isa, target_area(pass.targets), pass.targets.samples, indices, {}};
   const std::size_t varyings = varying_count(fragment_stage);
   draw_detail::record(
       pass,

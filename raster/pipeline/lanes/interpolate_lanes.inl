@@ -34,6 +34,7 @@ struct LoadJob {
   std::size_t provoking;
   std::size_t varyings;
   Contraction contraction;  ///< of planes
+  float centre = 0.0f;      ///< PlanesFromOrigin's
 };
 
 /// The weights of vertices 1 and 2 at a pixel.
@@ -201,11 +202,13 @@ struct PlaneLanes {
   using Point = PlanePoint;
   static constexpr std::size_t N = kinds.size();
   bool fused = false;
+  float centre = 0.0f;
   PlaneOfLanes inverse_w{};
   std::array<PlaneOfLanes, N> planes;  // a flat varying's value is at_origin
 
   SOFTFOCUS_INLINE void load(const QuadTriangles& triangles, const LoadJob& job) {
     fused = job.contraction == Contraction::fused;
+    centre = job.centre;
     const std::size_t provoking = job.provoking;
     std::array<VertexRows, 3> rows_of;
     std::array<Floats, 3> window;
@@ -228,12 +231,8 @@ struct PlaneLanes {
     const Floats dx20 = spread<kVertexX>(window[2]) - x;
     const Floats dy20 = spread<kVertexY>(window[2]) - y;
     const Floats one_over_area = 1.0f / (dx01 * dy20 - dx20 * dy01);
-    const Slopes slopes{x - 0.5f,
-                        y - 0.5f,
-                        dx01 * one_over_area,
-                        dy01 * one_over_area,
-                        dx20 * one_over_area,
-                        dy20 * one_over_area};
+    const Slopes slopes{x - (0.5f - centre),  y - (0.5f - centre),  dx01 * one_over_area,
+                        dy01 * one_over_area, dx20 * one_over_area, dy20 * one_over_area};
     const Floats w0 = spread<kVertexInverseW>(window[0]);
     const Floats w1 = spread<kVertexInverseW>(window[1]);
     const Floats w2 = spread<kVertexInverseW>(window[2]);
@@ -260,8 +259,8 @@ struct PlaneLanes {
   }
 
   SOFTFOCUS_INLINE PlanePoint weights(Ints pixels) const {
-    const Floats column = to_floats(pixels & 0xFFFF);
-    const Floats row = to_floats(pixels >> 16);
+    const Floats column = to_floats(pixels & 0xFFFF) + centre;
+    const Floats row = to_floats(pixels >> 16) + centre;
     return {column, row, 1.0f / at(inverse_w, column, row)};
   }
 

@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 #include "raster/images/texel.h"
+#include "raster/pipeline/multisample.h"
 
 #define SOFTFOCUS_KERNELS "raster/pipeline/lanes/rasterize_lanes.cpp"
 #include "raster/lanes/for_each_isa.inl"
@@ -18,6 +20,8 @@ void rasterize_lanes(Isa isa, const LaneChunk& chunk, std::span<const Bin> bins,
                      const DrawCall& draw, const Profile& profile, VisibilityTile& tile) {
   SOFTFOCUS_KERNEL(isa, rasterize)(chunk, bins, draw, profile, tile);
 }
+
+void find_mixed(Isa isa, VisibilityTile& tile) { SOFTFOCUS_KERNEL(isa, find_mixed_in)(tile); }
 
 void clear_unseen(Isa isa, const VisibilityTile& tile, glm::vec4 value, const Profile& profile) {
   Image row = make_image(Format::rgba16f, kBlockSize, 1);
@@ -74,6 +78,26 @@ struct TriangleDepths {
     }
     const Floats column = to_floats(x + lane_x());
     const Floats line = to_floats(y + lane_y());
+    return on_planes(column, line);
+  }
+
+  // At a sample, whose edge functions are given.
+  SOFTFOCUS_INLINE Floats at_sample(int x, int y, Floats e1, Floats e2,
+                                    const glm::ivec2& place) const {
+    if (form == DepthForm::barycentric ||
+        (form == DepthForm::by_profile &&
+         profile.attributes == AttributeSetup::exact_barycentric)) {
+      return at(x, y, e1, e2);
+    }
+    const auto from_corner = [](int from_centre) {
+      return 0.5f + static_cast<float>(from_centre) / 256.0f;
+    };
+    return on_planes(to_floats(x + lane_x()) + from_corner(place.x),
+                     to_floats(y + lane_y()) + from_corner(place.y));
+  }
+
+ private:
+  SOFTFOCUS_INLINE Floats on_planes(Floats column, Floats line) const {
     if (profile.interpolation == Contraction::fused) {
       return clamped_depth(fused_multiply_add(z2, line, fused_multiply_add(z1, column, z0)));
     }
@@ -95,6 +119,7 @@ SOFTFOCUS_INLINE Mask kept(const DrawCall& draw, const LaneTriangle& triangle, i
 /// For a tile of one layer. Scenes are drawn with Compare::less, which has code of its own.
 template <bool kLess, bool kDiscards, DepthForm form>
 struct DepthWriter {
+  static constexpr bool kHasSamples = false;
   const DrawCall& draw;
   const LaneTriangle& triangle;
   VisibilityTile& tile;
@@ -116,9 +141,42 @@ struct DepthWriter {
   }
 };
 
+/// For a tile of several samples a pixel, each with a layer.
+template <bool kLess, bool kDiscards, DepthForm form>
+struct SampleWriter {
+  static constexpr bool kHasSamples = true;
+  const DrawCall& draw;
+  const LaneTriangle& triangle;
+  VisibilityTile& tile;
+  std::int32_t id;
+  TriangleDepths<form> depths;
+  std::span<const glm::ivec2> places = sample_places(static_cast<int>(tile.layers));
+  Mask keeps{};  ///< of the part, once it is known
+  bool knows_kept = false;
+
+  SOFTFOCUS_INLINE void begin_part() { knows_kept = false; }
+
+  SOFTFOCUS_INLINE void write(int x, int y, std::size_t at, Mask covered, Floats e1, Floats e2,
+                              std::size_t sample) {
+    const Floats depth = depths.at_sample(x, y, e1, e2, places[sample]);
+    TileLayer& layer = tile.layer(sample);
+    const Floats stored = load(&layer.depth[at]);
+    Mask seen = covered & passes(kLess ? Compare::less : draw.depth.test, depth, stored);
+    if (!any(seen)) return;
+    if (kDiscards && draw.lane_steps->keep != nullptr) {
+      if (!knows_kept) keeps = kept(draw, triangle, x, y, ~Mask{});
+      knows_kept = true;
+      seen &= keeps;
+    }
+    if (draw.depth.write) store(&layer.depth[at], select(seen, depth, stored));
+    store(&layer.ids[at], select(seen, splat(id), load(&layer.ids[at])));
+  }
+};
+
 /// For a tile of kLayers: as insert_into_layers(), from the farthest layer to the nearest.
 template <std::size_t kLayers>
 struct LayerWriter {
+  static constexpr bool kHasSamples = false;
   const DrawCall& draw;
   const LaneTriangle& triangle;
   VisibilityTile& tile;
@@ -167,6 +225,33 @@ SOFTFOCUS_INLINE std::size_t place_in_tile(const VisibilityTile& tile, int x, in
   return place_of_pixel(x - tile.area.x_begin, y - tile.area.y_begin);
 }
 
+/// What samples add to edge functions at a pixel's centre.
+template <class Number>
+struct SampleSteps {
+  std::array<std::array<Number, 3>, kMaxSamples> of_sample;
+  std::array<Number, 3> most;
+};
+
+// `slopes`: an edge function's differences over 1/256 pixel along x and y.
+template <class Writer, class Number, class Slopes>
+SOFTFOCUS_INLINE SampleSteps<Number> sample_steps(const VisibilityTile& tile,
+                                                  const Slopes& slopes) {
+  SampleSteps<Number> steps;
+  if constexpr (Writer::kHasSamples) {
+    const std::span<const glm::ivec2> places = sample_places(static_cast<int>(tile.layers));
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::array<Number, 2> slope = slopes(i);
+      for (std::size_t s = 0; s < places.size(); ++s) {
+        const Number step = static_cast<Number>(places[s].x) * slope[0] +
+                            static_cast<Number>(places[s].y) * slope[1];
+        steps.of_sample[s][i] = step;
+        steps.most[i] = s == 0 ? step : std::max(steps.most[i], step);
+      }
+    }
+  }
+  return steps;
+}
+
 template <class Writer>
 SOFTFOCUS_INLINE void rasterize_small(const LaneTriangle& t, const VisibilityTile& tile,
                                       Writer& writer) {
@@ -189,14 +274,32 @@ SOFTFOCUS_INLINE void rasterize_small(const LaneTriangle& t, const VisibilityTil
   }
   const Ints threshold1 = splat(std::int32_t{t.thresholds[1]});
   const Ints threshold2 = splat(std::int32_t{t.thresholds[2]});
+  const auto steps_of = sample_steps<Writer, std::int32_t>(tile, [&](std::size_t i) {
+    return std::array{slope_x(t.slopes[i]) / 256, slope_y(t.slopes[i]) / 256};
+  });
   for (int y = range.y_begin; y < range.y_end; y += kPartRows) {
     Ints e0 = row[0], e1 = row[1], e2 = row[2];
     std::size_t place = place_in_tile(tile, range.x_begin, y);
     for (int x = range.x_begin; x < range.x_end; x += kPartColumns) {
-      const Ints signs = e0 | e1 | e2;
-      if (sign_bits(signs) != kAllLaneBits) {
-        writer.write(x, y, place, signs >= 0, to_floats(e1 + threshold1),
-                     to_floats(e2 + threshold2));
+      if constexpr (Writer::kHasSamples) {
+        if (sign_bits((e0 + steps_of.most[0]) | (e1 + steps_of.most[1]) |
+                      (e2 + steps_of.most[2])) != kAllLaneBits) {
+          writer.begin_part();
+          for (std::size_t s = 0; s < tile.layers; ++s) {
+            const auto& step = steps_of.of_sample[s];
+            const Ints own1 = e1 + step[1], own2 = e2 + step[2];
+            const Ints signs = (e0 + step[0]) | own1 | own2;
+            if (sign_bits(signs) == kAllLaneBits) continue;
+            writer.write(x, y, place, signs >= 0, to_floats(own1 + threshold1),
+                         to_floats(own2 + threshold2), s);
+          }
+        }
+      } else {
+        const Ints signs = e0 | e1 | e2;
+        if (sign_bits(signs) != kAllLaneBits) {
+          writer.write(x, y, place, signs >= 0, to_floats(e1 + threshold1),
+                       to_floats(e2 + threshold2));
+        }
       }
       place = next_part_place(place);
       e0 += per_part[0];
@@ -223,13 +326,29 @@ SOFTFOCUS_INLINE void rasterize_wide(const LaneTriangle& t, const VisibilityTile
     per_row[i] = wide_splat(per_y * kPartRows);
     thresholds[i] = splat(static_cast<float>(t.thresholds[i]));
   }
+  const auto steps_of = sample_steps<Writer, double>(tile, [&](std::size_t i) {
+    return std::array{t.large->per_x[i] / 256.0, t.large->per_y[i] / 256.0};
+  });
   for (int top = range.y_begin; top < range.y_end; top += kPartRows) {
     std::array<WideLanes, 3> e = row;
     for (int left = range.x_begin; left < range.x_end; left += kPartColumns) {
-      const Floats e0 = narrow(e[0]), e1 = narrow(e[1]), e2 = narrow(e[2]);
-      const Mask covered = (e0 >= thresholds[0]) & (e1 >= thresholds[1]) & (e2 >= thresholds[2]);
-      if (any(covered)) {
-        writer.write(left, top, place_in_tile(tile, left, top), covered, e1, e2);
+      const auto write = [&](const std::array<WideLanes, 3>& at, auto... sample) {
+        const Floats e0 = narrow(at[0]), e1 = narrow(at[1]), e2 = narrow(at[2]);
+        const Mask covered = (e0 >= thresholds[0]) & (e1 >= thresholds[1]) & (e2 >= thresholds[2]);
+        if (any(covered)) {
+          writer.write(left, top, place_in_tile(tile, left, top), covered, e1, e2, sample...);
+        }
+      };
+      if constexpr (Writer::kHasSamples) {
+        writer.begin_part();
+        for (std::size_t s = 0; s < tile.layers; ++s) {
+          const auto& step = steps_of.of_sample[s];
+          write(
+              {e[0] + wide_splat(step[0]), e[1] + wide_splat(step[1]), e[2] + wide_splat(step[2])},
+              s);
+        }
+      } else {
+        write(e);
       }
 #pragma GCC unroll 3
       for (std::size_t i = 0; i < 3; ++i) e[i] = e[i] + per_part[i];
@@ -246,28 +365,39 @@ void rasterize_huge(const LaneTriangle& t, const VisibilityTile& tile, Writer& w
   const auto& edges = t.large->exact.edges;
   for (int y = range.y_begin; y < range.y_end; y += kBlockSize) {
     for (int x = range.x_begin; x < range.x_end; x += kBlockSize) {
-      // An edge function is largest in one corner of the block.
+      // An edge function is largest in one corner of the block, samples half a pixel around it
+      // included.
+      constexpr int kAround = Writer::kHasSamples ? 1 : 0;
       bool outside = false;
       for (std::size_t i = 0; i < 3; ++i) {
-        const int corner_x = edges[i].per_x > 0 ? x + kBlockSize - 1 : x;
-        const int corner_y = edges[i].per_y > 0 ? y + kBlockSize - 1 : y;
+        const int corner_x = edges[i].per_x > 0 ? x + kBlockSize - 1 + kAround : x - kAround;
+        const int corner_y = edges[i].per_y > 0 ? y + kBlockSize - 1 + kAround : y - kAround;
         outside = outside || edge_at(edges[i], corner_x, corner_y) < t.thresholds[i];
       }
       if (outside) continue;
       for (int part = 0; part < kBlockParts; ++part) {
         const int left = x + part * kPartColumns % kBlockSize;
         const int top = y + part * kPartColumns / kBlockSize * kPartRows;
-        Ints covered = ~Ints{};
-        std::array<Floats, 3> e{};
-        for (std::size_t i = 0; i < 3; ++i) {
-          for (int lane = 0; lane < kLanes; ++lane) {
-            const std::int64_t value = edge_at(edges[i], left + lane_x(lane), top + lane_y(lane));
-            e[i][lane] = static_cast<float>(value);
-            if (value < t.thresholds[i]) covered[lane] = 0;
+        const auto write = [&](const glm::ivec2& place, auto... sample) {
+          Ints covered = ~Ints{};
+          std::array<Floats, 3> e{};
+          for (std::size_t i = 0; i < 3; ++i) {
+            for (int lane = 0; lane < kLanes; ++lane) {
+              const std::int64_t value =
+                  edge_at(edges[i], left + lane_x(lane), top + lane_y(lane), place);
+              e[i][lane] = static_cast<float>(value);
+              if (value < t.thresholds[i]) covered[lane] = 0;
+            }
           }
+          if (!any(covered)) return;
+          writer.write(left, top, place_in_tile(tile, left, top), covered, e[1], e[2], sample...);
+        };
+        if constexpr (Writer::kHasSamples) {
+          writer.begin_part();
+          for (std::size_t s = 0; s < tile.layers; ++s) write(writer.places[s], s);
+        } else {
+          write({});
         }
-        if (!any(covered)) continue;
-        writer.write(left, top, place_in_tile(tile, left, top), covered, e[1], e[2]);
       }
     }
   }
@@ -306,6 +436,13 @@ void rasterize_all(const LaneChunk& chunk, std::span<const Bin> bins, const Draw
 void rasterize(const LaneChunk& chunk, std::span<const Bin> bins, const DrawCall& draw,
                const Profile& profile, VisibilityTile& tile) {
   using enum DepthForm;
+  if (tile.has_samples) {
+    if (draw.depth.test != Compare::less || draw.lane_steps->keep != nullptr) {
+      return rasterize_all<SampleWriter<false, true, by_profile> >(chunk, bins, draw, profile,
+                                                                   tile);
+    }
+    return rasterize_all<SampleWriter<true, false, by_profile> >(chunk, bins, draw, profile, tile);
+  }
   static_assert(kMaxLayers == 4);
   switch (tile.layers) {
     case 2: return rasterize_all<LayerWriter<2> >(chunk, bins, draw, profile, tile);
@@ -335,6 +472,40 @@ SOFTFOCUS_INLINE int tile_y(std::uint32_t place) {
 }
 
 }  // namespace
+
+void find_mixed_in(VisibilityTile& tile) {
+  tile.mixed.clear();
+  const int width = tile.area.x_end - tile.area.x_begin;
+  const int height = tile.area.y_end - tile.area.y_begin;
+  for (std::uint32_t place = 0; place < kTilePixels; place += kLanes) {
+    std::array<Ints, kMaxSamples> ids;
+    ids[0] = load(&tile.front.ids[place]);
+    const Mask shows = ids[0] > 0;
+    Mask mixed{};
+    for (std::size_t s = 1; s < tile.layers; ++s) {
+      ids[s] = load(&tile.layer(s).ids[place]);
+      mixed |= ~(ids[s] == ids[0]);
+    }
+    if (!any(mixed)) {
+      const Ints as_first = select(shows, splat(-1), Ints{});
+      for (std::size_t s = 1; s < tile.layers; ++s) store(&tile.layer(s).ids[place], as_first);
+      continue;
+    }
+    for (std::size_t s = 1; s < tile.layers; ++s) {
+      Ints marked = ids[s];
+      for (std::size_t r = s; r-- > 0;) {
+        const Mask same = (ids[r] == ids[s]) & (ids[s] > 0);
+        marked = select(same, splat(-1 - static_cast<std::int32_t>(r)), marked);
+      }
+      store(&tile.layer(s).ids[place], marked);
+    }
+    const int left = tile_x(place), top = tile_y(place);
+    mixed &= (left + lane_x() < width) & (top + lane_y() < height);
+    for (unsigned rest = lane_bits(mixed); rest != 0; rest &= rest - 1) {
+      tile.mixed.push_back(static_cast<std::uint16_t>(place + std::countr_zero(rest)));
+    }
+  }
+}
 
 // `texels`: a row of a block, four halves a texel.
 void set_unseen(const VisibilityTile& tile, const TileLayer& layer, const std::byte* texels) {

@@ -14,10 +14,15 @@ namespace softfocus {
 
 /// Depth-tests the listed triangles of a chunk against a tile, in order, and writes the ids of
 /// those that are seen and not discarded. In a tile of several layers a triangle's id goes before
-/// the farther ones, and each of these moves back by a layer. Needs an isa with vectors; layers
-/// need the depth test `less` with depth writes.
+/// the farther ones, and each of these moves back by a layer; of several samples each is tested in
+/// its own layer. Needs an isa with vectors; layers that a pass peels need the depth test `less`
+/// with depth writes.
 void rasterize_lanes(Isa isa, const LaneChunk& chunk, std::span<const Bin> bins,
                      const DrawCall& draw, const Profile& profile, VisibilityTile& tile);
+
+/// Of a tile of several samples: finds the pixels whose samples do not all show the same, and marks
+/// samples that show what one before them does. Needs an isa with vectors.
+void find_mixed(Isa isa, VisibilityTile& tile);
 
 /// Sets the pixels of a tile's layers that show nothing. Needs an isa with vectors.
 void clear_unseen(Isa isa, const VisibilityTile& tile, glm::vec4 value, const Profile& profile);

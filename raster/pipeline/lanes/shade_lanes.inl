@@ -108,7 +108,10 @@ inline constexpr int kQuadsAhead = 3;
 
 // Triangle after triangle, so that each is loaded once.
 struct SeenQuads {
-  std::array<std::uint32_t, kTilePixels + (kQuadsAhead + 1) * kLanes> entries;
+  static constexpr std::size_t kRoom = kTilePixels + (kQuadsAhead + 1) * kLanes;
+  std::array<std::uint32_t, kRoom> entries;
+  /// In bytes from the layer's texels, of samples but a pixel's first.
+  std::array<std::int32_t, kRoom> sample_offsets;
   int count = 0;
 };
 
@@ -136,6 +139,15 @@ SOFTFOCUS_INLINE std::uint32_t triangle_of(std::uint32_t entry) {
     }
   }
   return is_seen;
+}
+
+// Quads without a pixel fill up the last vector and those that are prefetched.
+SOFTFOCUS_INLINE void fill_up(SeenQuads& seen) {
+  if (seen.count == 0) return;
+  std::uint32_t* end = &seen.entries[static_cast<std::size_t>(seen.count)];
+  for (std::size_t i = 0; i < (kQuadsAhead + 1) * kQuads; ++i) {
+    end[i] = end[-1] >> kQuadPixels << kQuadPixels;
+  }
 }
 
 // Not inlined: one copy for all stages.
@@ -178,11 +190,28 @@ SOFTFOCUS_INLINE std::uint32_t triangle_of(std::uint32_t entry) {
     }
   }
   seen.count = static_cast<int>(to - seen.entries.data());
-  // Quads without a pixel fill up the last vector and those that are prefetched.
-  if (seen.count == 0) return;
-  for (std::size_t i = 0; i < (kQuadsAhead + 1) * kQuads; ++i) {
-    to[i] = to[-1] >> kQuadPixels << kQuadPixels;
+  fill_up(seen);
+}
+
+// Takes as many of a run's further quads as there is room for. Returns how many.
+[[gnu::noinline]] inline std::size_t take_further(const VisibilityTile& tile, const VisibleRun& run,
+                                                  std::size_t from, SeenQuads& seen) {
+  const std::size_t count = std::min<std::size_t>(run.further_end - from, kTilePixels);
+  for (std::size_t i = 0; i < count; ++i) {
+    const FurtherQuad& quad = tile.further[from + i];
+    const std::uint32_t block = quad.number / 4u;
+    const std::uint32_t row = block / kTileBlocks * 2 + (quad.number >> 1 & 1u);
+    const std::uint32_t column = block % kTileBlocks * 2 + (quad.number & 1u);
+    const auto triangle = static_cast<std::uint32_t>(quad.id - run.first_id);
+    seen.entries[i] =
+        ((triangle << kQuadBits | row << kColumnBits | column) << kQuadPixels) + quad.pixels;
+    seen.sample_offsets[i] =
+        static_cast<std::int32_t>(tile.layer(quad.sample).texels - tile.layer(1).texels);
   }
+  std::fill_n(seen.sample_offsets.begin() + static_cast<std::ptrdiff_t>(count), kLanes, 0);
+  seen.count = static_cast<int>(count);
+  fill_up(seen);
+  return count;
 }
 
 // Prefetches the vertices of quads to come, which were written long ago.
@@ -260,7 +289,7 @@ template <class Stage>
 SOFTFOCUS_INLINE LoadJob load_job_of(const Stage& stage, const FragmentJob& job) {
   std::size_t varyings = Stage::kInterpolation.size();
   if constexpr (requires { stage.varying_count(); }) varyings = stage.varying_count();
-  return {job.provoking, varyings, job.profile->interpolation};
+  return {job.provoking, varyings, job.profile->interpolation, job.samples == 1 ? 0.0f : 0.5f};
 }
 
 template <class Stage>
@@ -270,15 +299,16 @@ constexpr std::size_t usual_varyings() {
 }
 
 template <class Interpolator, class Stage>
-void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile& tile,
-                const VisibleRun& run) {
+void shade_quads(const Stage& stage, const FragmentJob& job, const VisibilityTile& tile,
+                 const VisibleRun& run, const SeenQuads& seen) {
   const TileLayer& layer = tile.layer(job.layer);
-  SeenQuads seen;
-  list_seen(tile, layer, run, seen);
+  const bool is_further = job.samples > 1 && job.layer > 0;
   const LaneTriangle* const* triangles =
       &tile.triangles[static_cast<std::size_t>(run.first_id - 1)];
   constexpr int kTexelBytes = sizeof(std::uint64_t);
-  const Ints per_place = splat(packed_pixel(1, static_cast<int>(layer.stride_bytes) / kTexelBytes));
+  const int row_texels = static_cast<int>(layer.stride_bytes) / kTexelBytes;
+  const Ints per_place = splat(packed_pixel(1, row_texels));
+  const bool rows_are_long = row_texels > 0x7FFF;  // with the rows of samples between them
   const std::byte* first = layer.texels;
   const bool in_picture = layer.stride_bytes > kTileSize * sizeof(std::uint64_t);
   const Ints own_pixel = splat(1) << (lane_numbers() & (kQuadPixels - 1));
@@ -313,8 +343,13 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
     const QuadFragments<Interpolator> fragments{interpolator, interpolator.weights(places + origin),
                                                 of_quads};
     const std::int32_t* offsets = &batch.offsets[static_cast<std::size_t>(batch.count)];
-    batch.append(stage, fragments, multiply_add_pairs(places, per_place) * kTexelBytes,
-                 (entry & own_pixel) != 0);
+    Ints pixel_offsets = multiply_add_pairs(places, per_place) * kTexelBytes;
+    if (rows_are_long)
+      pixel_offsets = ((places & 0xFFFF) + (places >> 16) * row_texels) * kTexelBytes;
+    if (is_further) {
+      pixel_offsets += repeat_by_four(load(&seen.sample_offsets[static_cast<std::size_t>(i)]));
+    }
+    batch.append(stage, fragments, pixel_offsets, (entry & own_pixel) != 0);
     // The second step writes there. A tile apart from the picture is in the cache anyway.
     for (int lane = 0; in_picture && lane < kLanes; lane += lane % 8 == 0 ? 2 : 6) {
       __builtin_prefetch(first + offsets[lane], 1);
@@ -322,6 +357,21 @@ void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile
     if (!batch.has_room()) shade_batch(stage, job, tile, batch);
   }
   shade_batch(stage, job, tile, batch);
+}
+
+template <class Interpolator, class Stage>
+void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile& tile,
+                const VisibleRun& run) {
+  SeenQuads seen;
+  if (job.samples == 1 || job.layer == 0) {
+    list_seen(tile, tile.layer(job.layer), run, seen);
+    shade_quads<Interpolator>(stage, job, tile, run, seen);
+    return;
+  }
+  for (std::size_t from = run.further_begin; from < run.further_end;) {
+    from += take_further(tile, run, from, seen);
+    shade_quads<Interpolator>(stage, job, tile, run, seen);
+  }
 }
 
 // A stage that discards has, beside kInterpolation,

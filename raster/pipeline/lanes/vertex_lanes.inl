@@ -34,9 +34,12 @@ SOFTFOCUS_INLINE Floats to_window_lanes(Floats ndc, float half_size, Contraction
                                            : ndc * half + half;
 }
 
-SOFTFOCUS_INLINE Ints snapped(Floats window, Mask drawable, int bits) {
-  const Floats steps = nearest((window - 0.5f) * static_cast<float>(1 << bits));
-  return truncate(select(drawable, steps, splat(0.0f))) << (kSubpixelBits - bits);
+// snap() of setup.cpp.
+SOFTFOCUS_INLINE Ints snapped(Floats window, Mask drawable, int bits, int samples) {
+  const float from = samples == 1 ? 0.5f : 0.0f;
+  const Floats steps = nearest((window - from) * static_cast<float>(1 << bits));
+  return (truncate(select(drawable, steps, splat(0.0f))) << (kSubpixelBits - bits)) -
+         (samples == 1 ? 0 : kSubpixelOne / 2);
 }
 
 /// WindowVertex.
@@ -76,8 +79,8 @@ unsigned place_vertices(const Stage& stage, const VertexJob& job) {
                        (~drawable & static_cast<std::int32_t>(kNotDrawable));
     common &= codes;
     store(to.codes + begin, codes);
-    store(to.snapped_x + begin, snapped(window.x, drawable, profile.subpixel_bits));
-    store(to.snapped_y + begin, snapped(window.y, drawable, profile.subpixel_bits));
+    store(to.snapped_x + begin, snapped(window.x, drawable, profile.subpixel_bits, job.samples));
+    store(to.snapped_y + begin, snapped(window.y, drawable, profile.subpixel_bits, job.samples));
     store(to.x + begin, window.x);
     store(to.y + begin, window.y);
     store(to.depth + begin, window.depth);

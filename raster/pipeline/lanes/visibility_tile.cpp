@@ -1,7 +1,9 @@
 #include "raster/pipeline/lanes/visibility_tile.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
+#include <utility>
 
 namespace softfocus {
 namespace {
@@ -50,10 +52,16 @@ void fill(std::array<Number, kTilePixels>& of_tile, Number value) {
   }
 }
 
+// The row of a layer's or sample's depths.
+std::span<float> depth_row(const RenderTargets& targets, std::size_t layer, int y) {
+  if (targets.samples == 1) return row<float>(*layer_target(targets, layer).depth, y);
+  return row<float>(*targets.depth, y * targets.samples + static_cast<int>(layer));
+}
+
 // No triangle yet: what the layers show is to be cleared, or to be kept.
 void show_none(VisibilityTile& tile, bool cleared) {
   for (std::size_t i = 0; i < tile.layers; ++i) {
-    const bool keeps = tile.layers > 1 && !cleared;
+    const bool keeps = tile.layers > 1 && !tile.has_samples && !cleared;
     fill(tile.layer(i).ids, keeps ? -1 - static_cast<std::int32_t>(i) : 0);
   }
   tile.triangles.clear();
@@ -67,8 +75,12 @@ void forget_seen(VisibilityTile& tile) { show_none(tile, false); }
 void begin_tile(VisibilityTile& tile, const Rectangle& area, const RenderTargets& targets,
                 std::optional<float> clear_depth) {
   tile.area = area;
-  tile.layers = layer_count(targets);
-  if (tile.layers > 1 && !tile.behind) tile.behind.reset(new std::array<TileLayer, kMaxLayers - 1>);
+  tile.has_samples = targets.samples > 1;
+  tile.layers = tile.has_samples ? static_cast<std::size_t>(targets.samples) : layer_count(targets);
+  if (tile.layers > tile.behind_room + 1) {
+    tile.behind_room = tile.layers - 1;
+    tile.behind.reset(new TileLayer[tile.behind_room]);
+  }
   show_none(tile, clear_depth.has_value());
   for (std::size_t i = 0; i < tile.layers; ++i) {
     TileLayer& layer = tile.layer(i);
@@ -76,9 +88,8 @@ void begin_tile(VisibilityTile& tile, const Rectangle& area, const RenderTargets
       fill(layer.depth, *clear_depth);
       continue;
     }
-    const Image& from = *layer_target(targets, i).depth;
     for_each_pair(tile, [&](int x, int y, std::size_t place, std::size_t count) {
-      std::copy_n(row<float>(from, area.y_begin + y).data() + area.x_begin + x, count,
+      std::copy_n(depth_row(targets, i, area.y_begin + y).data() + area.x_begin + x, count,
                   &layer.depth[place]);
     });
   }
@@ -98,16 +109,81 @@ void clear_behind(VisibilityTile& tile, float before, float clear_depth) {
 void end_tile(const VisibilityTile& tile, const RenderTargets& targets) {
   const Rectangle& area = tile.area;
   for (std::size_t i = 0; i < tile.layers; ++i) {
-    Image& to = *layer_target(targets, i).depth;
     const float* depths = tile.layer(i).depth.data();
     for_each_pair(tile, [&](int x, int y, std::size_t place, std::size_t count) {
       std::copy_n(depths + place, count,
-                  row<float>(to, area.y_begin + y).data() + area.x_begin + x);
+                  depth_row(targets, i, area.y_begin + y).data() + area.x_begin + x);
     });
   }
 }
 
+void list_further(VisibilityTile& tile) {
+  tile.further.clear();
+  std::vector<FurtherQuad> quads;
+  for (std::size_t i = 0; i < tile.mixed.size();) {
+    // The mixed pixels of a quad follow each other.
+    const unsigned number = tile.mixed[i] / unsigned{kQuadPixels};
+    unsigned pixels = 0;
+    for (; i < tile.mixed.size() && tile.mixed[i] / unsigned{kQuadPixels} == number; ++i) {
+      pixels |= 1u << tile.mixed[i] % unsigned{kQuadPixels};
+    }
+    for (std::size_t s = 1; s < tile.layers; ++s) {
+      const std::int32_t* ids = &tile.layer(s).ids[number * kQuadPixels];
+      for (unsigned rest = pixels; rest != 0;) {
+        const std::int32_t id = ids[std::countr_zero(rest)];
+        unsigned own = 0;
+        for (unsigned p = 0; p < kQuadPixels; ++p) {
+          if ((rest >> p & 1u) != 0 && ids[p] == id) own |= 1u << p;
+        }
+        rest &= ~own;
+        if (id <= 0) continue;
+        quads.push_back({id, static_cast<std::uint16_t>(number), static_cast<std::uint8_t>(own),
+                         static_cast<std::uint8_t>(s)});
+      }
+    }
+  }
+  // Sorted by run: a counting sort.
+  const auto run_of = [&](const FurtherQuad& quad) {
+    return std::upper_bound(tile.runs.begin(), tile.runs.end(), quad.id,
+                            [](std::int32_t id, const VisibleRun& run) { return id < run.end_id; });
+  };
+  for (VisibleRun& run : tile.runs) run.further_end = 0;
+  for (const FurtherQuad& quad : quads) ++run_of(quad)->further_end;
+  std::size_t begin = 0;
+  for (VisibleRun& run : tile.runs) {
+    run.further_begin = begin;
+    begin += std::exchange(run.further_end, begin);
+  }
+  tile.further.resize(quads.size());
+  for (const FurtherQuad& quad : quads) tile.further[run_of(quad)->further_end++] = quad;
+}
+
+void copy_to_samples(const VisibilityTile& tile) {
+  for_each_pair(tile, [&](int x, int y, std::size_t place, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t s = 1; s < tile.layers; ++s) {
+        const std::int32_t id = tile.layer(s).ids[place + i];
+        if (id >= 0) continue;
+        const auto from = static_cast<std::size_t>(-1 - id);
+        const int column = x + static_cast<int>(i);
+        std::memcpy(texel_of(tile.layer(s), column, y), texel_of(tile.layer(from), column, y),
+                    kTexelBytes);
+      }
+    }
+  });
+}
+
 void shade_tile(const VisibilityTile& tile) {
+  if (tile.has_samples) {
+    for (const VisibleRun& run : tile.runs) {
+      const void* recorded = run.draw->recorded.get();
+      run.draw->lane_steps->shade_seen(recorded, tile, 0, run);
+      if (run.further_begin < run.further_end) {
+        run.draw->lane_steps->shade_seen(recorded, tile, 1, run);
+      }
+    }
+    return;
+  }
   for (std::size_t i = tile.layers; i-- > 0;) {
     if (i > 0) move_back(tile, i);
     for (const VisibleRun& run : tile.runs) {

@@ -1,6 +1,7 @@
 #pragma once
 // A tile while it is drawn in lanes: depths, and the nearest triangle of each pixel. Fragments
-// are shaded when all triangles have passed, so that each pixel is shaded once.
+// are shaded when all triangles have passed, so that each pixel is shaded once. Of several samples
+// a pixel each has a layer; a pixel is shaded once for each triangle that its samples show.
 
 #include <array>
 #include <cstddef>
@@ -38,10 +39,21 @@ struct VisibleRun {
   const DrawCall* draw;
   std::int32_t first_id;
   std::int32_t end_id;
+  std::size_t further_begin = 0;  ///< of VisibilityTile::further
+  std::size_t further_end = 0;
+};
+
+/// Pixels of a quad that show a triangle at a sample, and not at one before it.
+struct FurtherQuad {
+  std::int32_t id;
+  std::uint16_t number;  ///< place_of_pixel() over four
+  std::uint8_t pixels;   ///< a bit each
+  std::uint8_t sample;   ///< from 1 on
 };
 
 /// Depths, and the number of the triangle that each pixel shows, from 1 on. 0: none, so it is to
-/// be cleared. In a pass that peels, -1 - i: what layer i showed before this tile began.
+/// be cleared. In a pass that peels, -1 - i: what layer i showed before this tile began. Of several
+/// samples, once find_mixed() has run, -1 - i: what sample i shows.
 struct TileLayer {
   alignas(64) std::array<float, kTilePixels> depth;
   alignas(64) std::array<std::int32_t, kTilePixels> ids;
@@ -52,23 +64,36 @@ struct TileLayer {
 
 /// What is shaded next.
 struct VisibilityTile {
-  Rectangle area;  ///< in the target; x_begin and y_begin are multiples of kTileSize
-  std::size_t layers = 1;
+  Rectangle area;          ///< in the target; x_begin and y_begin are multiples of kTileSize
+  std::size_t layers = 1;  ///< those that a pass peels, or a pixel's samples
+  bool has_samples = false;
   TileLayer front;
-  std::unique_ptr<std::array<TileLayer, kMaxLayers - 1>> behind;  ///< made on first use
-  std::vector<const LaneTriangle*> triangles;                     ///< by id - 1
+  std::unique_ptr<TileLayer[]> behind;  ///< made on first use
+  std::size_t behind_room = 0;
+  std::vector<const LaneTriangle*> triangles;  ///< by id - 1
   std::vector<VisibleRun> runs;
+  std::vector<FurtherQuad> further;  ///< run by run
+  std::vector<std::uint16_t> mixed;  ///< places of pixels whose samples do not all show the same
+  /// Texels of samples but the first, sample by sample in rows, if no image has them.
+  std::unique_ptr<std::byte[]> sample_texels;
+  std::size_t sample_texels_room = 0;
 
-  TileLayer& layer(std::size_t i) { return i == 0 ? front : (*behind)[i - 1]; }
-  const TileLayer& layer(std::size_t i) const { return i == 0 ? front : (*behind)[i - 1]; }
+  TileLayer& layer(std::size_t i) { return i == 0 ? front : behind[i - 1]; }
+  const TileLayer& layer(std::size_t i) const { return i == 0 ? front : behind[i - 1]; }
 };
 
 /// Begins a tile that shows nothing, at `clear_depth` or, without one, at the buffers' depths.
 /// `texels` of its layers are left to be set.
 void begin_tile(VisibilityTile& tile, const Rectangle& area, const RenderTargets& targets,
                 std::optional<float> clear_depth);
-/// Shades what the tile shows, the farthest layer first, draw by draw.
+/// Shades what the tile shows, the farthest layer first, draw by draw. Of several samples needs
+/// find_mixed() and list_further().
 void shade_tile(const VisibilityTile& tile);
+/// Lists, for each run, what samples but the first show that no sample before them does.
+/// Needs find_mixed() (rasterize_lanes.h).
+void list_further(VisibilityTile& tile);
+/// Gives samples that show what another one does its texel.
+void copy_to_samples(const VisibilityTile& tile);
 /// Forgets the triangles and keeps the depths.
 void forget_seen(VisibilityTile& tile);
 /// Leaves nothing, at `clear_depth`, behind pixels whose nearest depth is not less than `before`.

@@ -56,6 +56,7 @@ struct Drawn {
 struct Target {
   int width;
   int height;
+  int samples = 1;
 };
 
 LaneStages<test::ListedVertices<4>, MixedColour> stages_for(Isa isa) {
@@ -65,9 +66,11 @@ LaneStages<test::ListedVertices<4>, MixedColour> stages_for(Isa isa) {
 
 Drawn draw_mixed(Isa isa, const Target& target, const DrawState& state, const Vertices& vertices,
                  const Profile& profile, int threads = 1) {
-  Drawn drawn{make_image(Format::rgba16f, target.width, target.height),
-              make_image(Format::r32f, target.width, target.height)};
+  const int rows = target.height * target.samples;
+  Drawn drawn{make_image(Format::rgba16f, target.width, rows),
+              make_image(Format::r32f, target.width, rows)};
   RenderPass pass;
+  pass.targets.samples = target.samples;
   pass.targets.colour[0] = &drawn.colour;
   pass.targets.depth = &drawn.depth;
   pass.profile = profile;
@@ -107,15 +110,20 @@ Vertices random_triangles(test::Random& random, const Target& target, int count,
   return vertices;
 }
 
-void check_all_isas(const Target& target, const DrawState& state, const Vertices& vertices,
+void check_all_isas(Target target, const DrawState& state, const Vertices& vertices,
                     const Profile& profile) {
-  const Drawn expected = draw_mixed(Isa::scalar, target, state, vertices, profile);
-  for (const Isa isa : available_isas()) {
-    if (isa == Isa::scalar) continue;
-    const Drawn drawn = draw_mixed(isa, target, state, vertices, profile);
-    INFO("isa ", isa_name(isa));
-    CHECK(equal(drawn.colour, expected.colour));
-    CHECK(equal(drawn.depth, expected.depth));
+  for (const int samples : {1, 4, 8}) {
+    if (target.height * samples > kMaxImageSize) continue;
+    target.samples = samples;
+    const Drawn expected = draw_mixed(Isa::scalar, target, state, vertices, profile);
+    for (const Isa isa : available_isas()) {
+      if (isa == Isa::scalar) continue;
+      const Drawn drawn = draw_mixed(isa, target, state, vertices, profile);
+      INFO("isa ", isa_name(isa));
+      INFO("samples ", samples);
+      CHECK(equal(drawn.colour, expected.colour));
+      CHECK(equal(drawn.depth, expected.depth));
+    }
   }
 }
 

@@ -1,0 +1,50 @@
+#pragma once
+// Several samples a pixel. A fragment stage runs once for each pixel of a triangle; coverage, depth
+// and stencil are each sample's own. A multisampled image has a row for each sample of a row of
+// pixels: sample s of pixel (x, y) is texel (x, y * samples + s).
+
+#include <array>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <span>
+
+#include "raster/images/image.h"
+#include "raster/numbers/profile.h"
+
+namespace softfocus {
+
+inline constexpr int kMaxSamples = 8;
+
+/// Of 1, 4 or 8 samples: their places from the pixel's centre, in 1/256 pixel. Direct3D's standard
+/// ones (D3D11.3 19.2.4.1), which drivers have too.
+std::span<const glm::ivec2> sample_places(int samples);
+
+/// How far samples lie from the centre along x or y, at most, in 1/256 pixel.
+int sample_reach(int samples);
+
+/// The sum of a pixel's samples in their order, times 1 / samples in binary32, for each pixel of an
+/// RGBA16F or r32f image. llvmpipe takes it of colours; of depths it takes sample 0.
+Image resolve(const Image& multisampled, int samples, const Profile& profile);
+
+/// A pixel's samples as two surfaces, for filters that blur each at its own depth. `texel` has the
+/// larger part of the pixel, the nearer surface if both have as much.
+struct PixelSurfaces {
+  glm::vec4 texel;  ///< linear colour, and in alpha the depth in metres
+  glm::vec4 other;  ///< of the other surface; anything if that has no part
+  int other_samples;
+};
+
+/// A pixel whose farthest depth is at most this many times the nearest shows one surface.
+inline constexpr float kOneSurface = 1.03125f;
+
+/// Samples of a pixel, each linear colour and depth above 0, as surfaces: the nearer one has the
+/// samples before 2 / (1 / nearest + 1 / farthest), where circles of confusion have half their
+/// difference. Colours and depths are means, sums in the samples' order times 1 / count.
+PixelSurfaces surfaces_of(std::span<const glm::vec4> samples);
+
+/// How an r8 image holds `count` of `samples`.
+inline std::uint8_t coverage_byte(int count, int samples) {
+  return static_cast<std::uint8_t>((count * 255 + samples / 2) / samples);
+}
+
+}  // namespace softfocus
