@@ -1,6 +1,9 @@
 // Each kind of attribute as it comes to the pixel. Beside raster/pipeline/interpolate.h.
-smooth in vec4 with_perspective;
-noperspective in vec4 in_window;
+#ifndef PLACE
+#define PLACE
+#endif
+smooth PLACE in vec4 with_perspective;
+noperspective PLACE in vec4 in_window;
 flat in vec4 constant;
 layout(location = 0) out vec4 perspective_value;
 layout(location = 1) out vec4 linear_value;

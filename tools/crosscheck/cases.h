@@ -31,6 +31,7 @@ struct Case {
   bool quick;     ///< part of --quick
   bool slow_too;  ///< small enough for a driver that is slow
   std::function<void(const Bench&, Tally&)> run;
+  bool has_samples = false;  ///< for drivers that draw several samples a pixel
 };
 
 /// All cases, in the order of the pipeline's stages.

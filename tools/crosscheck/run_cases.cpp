@@ -23,7 +23,8 @@ std::vector<Case> chosen_cases(const std::vector<std::string>& patterns,
   }
   for (Case& one : all) {
     const std::string name = one.stage + '/' + one.name;
-    const bool suits = driver == nullptr || one.slow_too || !driver->slow;
+    const bool suits = driver == nullptr || ((one.slow_too || !driver->slow) &&
+                                             (driver->has_samples || !one.has_samples));
     const bool wanted = (one.quick || !quick) && suits;
     const bool matches = std::any_of(
         patterns.begin(), patterns.end(),

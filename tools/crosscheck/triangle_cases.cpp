@@ -1,4 +1,4 @@
-// Stages `coverage`, `depth` and `attributes`: triangles in clip space, in batches.
+// Stages `coverage`, `depth`, `attributes` and `samples`: triangles in clip space, in batches.
 
 #include <array>
 #include <cmath>
@@ -6,6 +6,7 @@
 
 #include "raster/images/texel.h"
 #include "raster/pipeline/draw.h"
+#include "raster/pipeline/multisample.h"
 #include "tools/crosscheck/cases.h"
 #include "tools/gl/objects.h"
 
@@ -178,7 +179,9 @@ struct ValuesVertexStage : ListedVertices {
   }
 };
 
+template <bool centroid = false>
 struct ValuesFragmentStage {
+  static constexpr bool kCentroid = centroid;
   static constexpr auto kInterpolation = [] {
     std::array<Interpolation, kValues> kinds{};
     for (std::size_t i = 0; i < kValues; ++i) {
@@ -237,13 +240,29 @@ void clear_on_gl(const GlTarget& target) {
 struct TargetSize {
   int width = 256;
   int height = 256;
+  int samples = 1;
 };
+
+GlTarget make_target(std::span<const Format> formats, const TargetSize& size, bool with_depth) {
+  return make_target(formats, size.width, size.height, with_depth, size.samples);
+}
+
+Image make_image(Format format, const TargetSize& size) {
+  return make_image(format, size.width, size.height * size.samples);
+}
+
+Image read_all(const Bench& bench, const GlTarget& target, std::size_t index) {
+#ifndef SOFTFOCUS_WEBGL
+  if (target.samples > 1) return read_samples(bench.gl, target, index);
+#endif
+  return read_colour(target, index);
+}
 
 template <class MakeBatch>
 void count_both(const Bench& bench, Tally& tally, int batches, TargetSize size,
                 const MakeBatch& make_batch) {
   const GlProgram program = link_program(bench.gl, bench.shaders, "count.vert", "count.frag");
-  const GlTarget target = make_target(std::array{Format::r32f}, size.width, size.height, false);
+  const GlTarget target = make_target(std::array{Format::r32f}, size, false);
   DrawState state;
   state.cull = Cull::none;
   state.depth.reset();
@@ -259,59 +278,84 @@ void count_both(const Bench& bench, Tally& tally, int batches, TargetSize size,
     draw_on_gl(target, program, vertices);
     glDisable(GL_BLEND);
 
-    Image emulated = make_image(Format::r32f, size.width, size.height);
+    Image emulated = make_image(Format::r32f, size);
     RenderPass pass;
+    pass.targets.samples = size.samples;
     pass.targets.colour[0] = &emulated;
     pass.profile = bench.profile;
     const auto indices = in_order(vertices.size());
     draw(pass, state, indices, static_cast<std::uint32_t>(indices.size()),
          CountVertexStage{{vertices}}, CountFragmentStage{});
     finish(pass, bench.pool);
-    add_pictures(tally, read_colour(target, 0), emulated, "batch " + std::to_string(i));
+    add_pictures(tally, read_all(bench, target, 0), emulated, "batch " + std::to_string(i));
   }
 }
 
+enum class Compared : std::uint8_t { depth, attributes, centroid, alpha_to_coverage, resolved };
+
 void attributes_both(const Bench& bench, Tally& tally, MakeTriangle make, int batches,
-                     unsigned seed, TargetSize size, bool only_depth) {
+                     unsigned seed, TargetSize size, Compared compared) {
+  using enum Compared;
   constexpr int kBatch = 200;
   RandomNumbers random{seed};
   const GlProgram program =
-      link_program(bench.gl, bench.shaders, "interpolate.vert", "interpolate.frag");
-  const std::array formats{Format::rgba32f, Format::rgba32f, Format::rgba32f};
-  const GlTarget target = make_target(formats, size.width, size.height, true);
+      link_program(bench.gl, bench.shaders, "interpolate.vert", "interpolate.frag",
+                   compared == centroid ? "#define PLACE centroid\n" : "");
+  const std::array formats{compared == resolved ? Format::rgba16f : Format::rgba32f,
+                           Format::rgba32f, Format::rgba32f};
+  const GlTarget target = make_target(formats, size, true);
   DrawState state;
   state.cull = Cull::none;
+  state.alpha_to_coverage = compared == alpha_to_coverage;
   for (int i = 0; i < batches; ++i) {
     const std::vector<Vertex> vertices = random_triangles(kBatch, make, random);
     clear_on_gl(target);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
     glDisable(GL_CULL_FACE);
+#ifndef SOFTFOCUS_WEBGL
+    if (state.alpha_to_coverage) glEnable(GL_SAMPLE_ALPHA_TO_COVERAGE);
+#endif
     draw_on_gl(target, program, vertices);
+#ifndef SOFTFOCUS_WEBGL
+    if (state.alpha_to_coverage) glDisable(GL_SAMPLE_ALPHA_TO_COVERAGE);
+#endif
 
     std::array<Image, 3> emulated;
-    Image depth = make_image(Format::r32f, size.width, size.height);
+    Image depth = make_image(Format::r32f, size);
     clear_image(depth, glm::vec4{1.0f}, bench.profile);
     RenderPass pass;
     for (std::size_t k = 0; k < 3; ++k) {
-      emulated[k] = make_image(Format::rgba32f, size.width, size.height);
+      emulated[k] = make_image(formats[k], size);
       pass.targets.colour[k] = &emulated[k];
     }
     pass.targets.depth = &depth;
+    pass.targets.samples = size.samples;
     pass.profile = bench.profile;
     const auto indices = in_order(vertices.size());
-    draw(pass, state, indices, static_cast<std::uint32_t>(indices.size()),
-         ValuesVertexStage{{vertices}}, ValuesFragmentStage{});
+    const auto count = static_cast<std::uint32_t>(indices.size());
+    if (compared == centroid) {
+      draw(pass, state, indices, count, ValuesVertexStage{{vertices}}, ValuesFragmentStage<true>{});
+    } else {
+      draw(pass, state, indices, count, ValuesVertexStage{{vertices}}, ValuesFragmentStage<>{});
+    }
     finish(pass, bench.pool);
     const std::string batch = "batch " + std::to_string(i);
-    if (only_depth) {
-      add_pictures(tally, read_depth(bench.gl, target), depth, batch);
+#ifndef SOFTFOCUS_WEBGL
+    if (compared == resolved) {
+      add_pictures(tally, read_resolved(target), resolve(emulated[0], size.samples, bench.profile),
+                   batch);
       continue;
     }
+#endif
+    if (compared == Compared::depth || compared == alpha_to_coverage) {
+      add_pictures(tally, read_depth(bench.gl, target), depth, batch);
+    }
+    if (compared == Compared::depth) continue;
     static constexpr const char* kKinds[] = {"perspective, ", "linear, ", "flat, "};
     for (std::size_t k = 0; k < 3; ++k) {
       if (k == 1 && !bench.gl.has_linear_varyings()) continue;
-      add_pictures(tally, read_colour(target, k), emulated[k], kKinds[k] + batch);
+      add_pictures(tally, read_all(bench, target, k), emulated[k], kKinds[k] + batch);
     }
   }
 }
@@ -362,12 +406,42 @@ void add_triangle_cases(std::vector<Case>& cases) {
                            TargetSize size) {
         cases.push_back({stage, name, quick, slow_too,
                          [=, make = kind.make, at = ++seed](const Bench& bench, Tally& tally) {
-                           attributes_both(bench, tally, make, batches, at, size, only_depth);
+                           attributes_both(bench, tally, make, batches, at, size,
+                                           only_depth ? Compared::depth : Compared::attributes);
                          }});
       };
       add(kind.name, true, true, 4, {});
       add(std::string(kind.name) + "-many", false, false, 50, {});
       add(std::string(kind.name) + "-odd-size", true, true, 4, {333, 117});
+    }
+  }
+
+  // Four samples a pixel.
+  constexpr TargetSize kSampled{200, 136, 4};
+  const auto sampled = [&](const std::string& name, bool quick, const auto& run) {
+    cases.push_back({"samples", name, quick, true,
+                     [=, at = ++seed](const Bench& bench, Tally& tally) { run(bench, tally, at); },
+                     true});
+  };
+  for (const Kind& kind : {Kind{"inside", inside_viewport}, Kind{"across-edges", across_edges},
+                           Kind{"near-plane", through_near_plane},
+                           Kind{"centre-aligned", centre_aligned}, Kind{"slivers", sliver}}) {
+    const MakeTriangle make = kind.make;
+    sampled(std::string("coverage-") + kind.name, true,
+            [=](const Bench& bench, Tally& tally, unsigned at) {
+              RandomNumbers random{at};
+              count_both(bench, tally, 5, kSampled,
+                         [&](int) { return counted_triangles(kBatch, make, random); });
+            });
+    for (const auto& [name, compared] : {std::pair{"depth-", Compared::depth},
+                                         {"attributes-", Compared::attributes},
+                                         {"centroid-", Compared::centroid},
+                                         {"alpha-", Compared::alpha_to_coverage},
+                                         {"resolved-", Compared::resolved}}) {
+      sampled(std::string(name) + kind.name, true,
+              [=, of = compared](const Bench& bench, Tally& tally, unsigned at) {
+                attributes_both(bench, tally, make, 4, at, kSampled, of);
+              });
     }
   }
 }

@@ -259,20 +259,32 @@ Image read_level(const GlTexture& texture, Format format, int level, int width, 
   return read_bound_framebuffer(format, width, height);
 }
 
-GlTarget make_target(std::span<const Format> formats, int width, int height, bool with_depth) {
-  GlTarget target{width, height, {formats.begin(), formats.end()}, {}, {}, {}};
+GlTarget make_target(std::span<const Format> formats, int width, int height, bool with_depth,
+                     int samples) {
+  GlTarget target{width, height, samples, {formats.begin(), formats.end()}, {}, {}, {}};
+  const auto attach = [&](GLenum to, const PixelFormat& as) {
+#ifndef SOFTFOCUS_WEBGL
+    if (samples > 1) {
+      GlTexture texture = new_texture(GL_TEXTURE_2D_MULTISAMPLE);
+      glTexImage2DMultisample(GL_TEXTURE_2D_MULTISAMPLE, samples, as.internal, width, height,
+                              GL_TRUE);
+      glFramebufferTexture2D(GL_FRAMEBUFFER, to, GL_TEXTURE_2D_MULTISAMPLE, texture, 0);
+      return texture;
+    }
+#endif
+    GlTexture texture = empty_texture(as.internal, as.layout, as.type, width, height);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, to, GL_TEXTURE_2D, texture, 0);
+    return texture;
+  };
   target.framebuffer = new_framebuffer();
   std::vector<GLenum> buffers;
   for (const Format format : formats) {
-    const PixelFormat as = pixel_format(format);
-    target.colour.push_back(empty_texture(as.internal, as.layout, as.type, width, height));
     buffers.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(buffers.size()));
-    glFramebufferTexture2D(GL_FRAMEBUFFER, buffers.back(), GL_TEXTURE_2D, target.colour.back(), 0);
+    target.colour.push_back(attach(buffers.back(), pixel_format(format)));
   }
   if (with_depth) {
     target.depth =
-        empty_texture(GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, width, height);
-    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, target.depth, 0);
+        attach(GL_DEPTH_ATTACHMENT, {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT});
   }
   glDrawBuffers(static_cast<GLsizei>(buffers.size()), buffers.data());
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
@@ -302,7 +314,58 @@ void copy_colour(const GlTarget& target, const GlTexture& to) {
   check_error("copying a target into a texture");
 }
 
+namespace {
+
+#ifndef SOFTFOCUS_WEBGL
+Image read_texture_samples(const GlContext& context, const GlTarget& target,
+                           const GlTexture& texture, Format format) {
+  const GlProgram program =
+      link_program(context, {}, "fullscreen.vert", "store.frag", "#define SAMPLES\n");
+  const GlTarget copy = make_target(std::array{format}, target.width, target.height, false);
+  Image all = make_image(format, target.width, target.height * target.samples);
+  for (int s = 0; s < target.samples; ++s) {
+    set_uniform(program, "values", 0);
+    set_uniform(program, "number", s);
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_2D_MULTISAMPLE, texture);
+    draw_fullscreen(copy, program);
+    const Image one = read_colour(copy, 0);
+    for (int y = 0; y < one.height; ++y) {
+      std::copy_n(
+          one.bytes.data() + static_cast<std::size_t>(y) * one.stride_bytes, one.stride_bytes,
+          all.bytes.data() + static_cast<std::size_t>(y * target.samples + s) * all.stride_bytes);
+    }
+  }
+  return all;
+}
+#endif
+
+}  // namespace
+
+#ifndef SOFTFOCUS_WEBGL
+Image read_samples(const GlContext& context, const GlTarget& target, std::size_t index) {
+  return read_texture_samples(context, target, target.colour[index], target.formats[index]);
+}
+
+Image read_resolved(const GlTarget& target) {
+  const GlTarget resolved =
+      make_target(std::array{target.formats[0]}, target.width, target.height, false);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, target.framebuffer);
+  glReadBuffer(GL_COLOR_ATTACHMENT0);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved.framebuffer);
+  glBlitFramebuffer(0, 0, target.width, target.height, 0, 0, target.width, target.height,
+                    GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  check_error("resolving samples");
+  return read_colour(resolved, 0);
+}
+#endif
+
 Image read_depth(const GlContext& context, const GlTarget& target) {
+#ifndef SOFTFOCUS_WEBGL
+  if (target.samples > 1) {
+    return read_texture_samples(context, target, target.depth, Format::r32f);
+  }
+#endif
   const GlProgram program = link_program(context, {}, "fullscreen.vert", "store.frag");
   const GlTarget copy = make_target(std::array{Format::r32f}, target.width, target.height, false);
   set_texture(program, "values", 0, target.depth);

@@ -69,19 +69,25 @@ Image read_level(const GlTexture& texture, Format format, int level, int width, 
 struct GlTarget {
   int width = 0;
   int height = 0;
+  int samples = 1;
   std::vector<Format> formats;
   GlFramebuffer framebuffer;
   std::vector<GlTexture> colour;
   GlTexture depth;
 };
-GlTarget make_target(std::span<const Format> formats, int width, int height, bool with_depth);
+GlTarget make_target(std::span<const Format> formats, int width, int height, bool with_depth,
+                     int samples = 1);
 /// Binds the target and its viewport.
 void bind(const GlTarget& target);
 Image read_colour(const GlTarget& target, std::size_t index);
+/// The same of a target of several samples, as raster/pipeline/multisample.h has them.
+Image read_samples(const GlContext& context, const GlTarget& target, std::size_t index);
+/// The means of its first colour's samples, as the driver makes them.
+Image read_resolved(const GlTarget& target);
 /// Copies its first colour into a texture of its size and format, as programs had to before there
 /// were frame-buffer objects.
 void copy_colour(const GlTarget& target, const GlTexture& to);
-/// By way of a shader: WebGL2 reads no depth.
+/// By way of a shader: WebGL2 reads no depth. Of several samples as read_samples().
 Image read_depth(const GlContext& context, const GlTarget& target);
 /// Returns when all that draws into it has been done: its first pixel is there. A browser's
 /// glFinish() does not wait.

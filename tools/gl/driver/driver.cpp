@@ -21,11 +21,12 @@ std::span<const Driver> drivers() {
              "llvmpipe", ""},
       Driver{"llvmpipe-sse41", "the same held to SSE4.1, without fused multiply-add",
              "llvmpipe-sse41", "llvmpipe", "sse4.1"},
-      Driver{"softpipe", "Mesa's reference renderer, slow", "softpipe", "softpipe", "", true},
+      Driver{"softpipe", "Mesa's reference renderer, slow", "softpipe", "softpipe", "", true, false,
+             false, false},
       Driver{"lavapipe", "Mesa's Vulkan driver for the CPU, under OpenGL by zink",
              profile_of_llvmpipe(), "zink", "", false, true},
       Driver{"emulated", "the emulated GPU, which runs our GLSL without another driver", "ieee", "",
-             "", false, false, true},
+             "", false, false, true, false},
       Driver{"gpu", "the first hardware GPU that EGL lists", "", "", ""},
   };
   return known;

@@ -31,6 +31,7 @@ struct Driver {
   bool on_lavapipe = false;
   /// The emulated GPU itself, by any profile.
   bool is_emulated = false;
+  bool has_samples = true;  ///< draws into textures of several samples a pixel
 };
 
 inline bool is_software(const Driver& driver) { return !driver.gallium_driver.empty(); }

@@ -35,6 +35,10 @@ using GLsizeiptr = std::ptrdiff_t;
   X(void, BindTexture, (GLenum target, GLuint texture), (target, texture))                        \
   X(void, BindVertexArray, (GLuint array), (array))                                               \
   X(void, BlendEquation, (GLenum equation), (equation))                                           \
+  X(void, BlitFramebuffer,                                                                        \
+    (GLint x, GLint y, GLint x_end, GLint y_end, GLint to_x, GLint to_y, GLint to_x_end,          \
+     GLint to_y_end, GLbitfield buffers, GLenum filter),                                          \
+    (x, y, x_end, y_end, to_x, to_y, to_x_end, to_y_end, buffers, filter))                        \
   X(void, BlendFunc, (GLenum source, GLenum destination), (source, destination))                  \
   X(void, BufferData, (GLenum target, GLsizeiptr size, const void* data, GLenum usage),           \
     (target, size, data, usage))                                                                  \
@@ -101,6 +105,10 @@ using GLsizeiptr = std::ptrdiff_t;
     (GLenum target, GLint level, GLint format, GLsizei width, GLsizei height, GLint border,       \
      GLenum layout, GLenum type, const void* data),                                               \
     (target, level, format, width, height, border, layout, type, data))                           \
+  X(void, TexImage2DMultisample,                                                                  \
+    (GLenum target, GLsizei samples, GLenum format, GLsizei width, GLsizei height,                \
+     GLboolean is_fixed),                                                                         \
+    (target, samples, format, width, height, is_fixed))                                           \
   X(void, TexImage3D,                                                                             \
     (GLenum target, GLint level, GLint format, GLsizei width, GLsizei height, GLsizei depth,      \
      GLint border, GLenum layout, GLenum type, const void* data),                                 \

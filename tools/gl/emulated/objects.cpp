@@ -152,6 +152,17 @@ void TexImage2D(GLenum target, GLint level, GLint format, GLsizei width, GLsizei
   if (image != nullptr && data != nullptr) put_rows(*image, static_cast<const std::byte*>(data));
 }
 
+// Its shaders fetch no samples.
+void TexImage2DMultisample(GLenum /*target*/, GLsizei /*samples*/, GLenum /*format*/,
+                           GLsizei /*width*/, GLsizei /*height*/, GLboolean /*is_fixed*/) {
+  gl().error = GL_INVALID_ENUM;
+}
+void BlitFramebuffer(GLint /*x*/, GLint /*y*/, GLint /*x_end*/, GLint /*y_end*/, GLint /*to_x*/,
+                     GLint /*to_y*/, GLint /*to_x_end*/, GLint /*to_y_end*/, GLbitfield /*buffers*/,
+                     GLenum /*filter*/) {
+  gl().error = GL_INVALID_ENUM;
+}
+
 void TexImage3D(GLenum target, GLint level, GLint format, GLsizei width, GLsizei height,
                 GLsizei depth, GLint /*border*/, GLenum /*layout*/, GLenum /*type*/,
                 const void* /*data*/) {
