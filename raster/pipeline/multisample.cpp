@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cstring>
 
 #include "raster/images/texel.h"
 
@@ -18,10 +17,12 @@ constexpr std::array<glm::ivec2, 8> kEight{at(1, -3), at(-1, 3),  at(5, 1), at(-
                                            at(-5, 5), at(-7, -1), at(3, 7), at(7, -7)};
 
 struct Group {
-  glm::vec4 sum{0.0f};
+  glm::vec4 sum{-0.0f};  // so that zeros keep their sign
   int count = 0;
+  int first = 0;
 
-  void add(const glm::vec4& sample) {
+  void add(const glm::vec4& sample, int number) {
+    if (count == 0) first = number;
     sum += sample;
     ++count;
   }
@@ -57,24 +58,38 @@ PixelSurfaces surfaces_of(std::span<const glm::vec4> samples) {
     nearest = std::min(nearest, sample.w);
     farthest = std::max(farthest, sample.w);
   }
-  // Not a sum, which would lose the sign of a zero: drawing in tiles stores such pixels as they
-  // are.
-  const auto is_first = [&](const glm::vec4& sample) {
-    return std::memcmp(&sample, samples.data(), sizeof sample) == 0;
-  };
-  if (std::all_of(samples.begin(), samples.end(), is_first)) return {samples[0], {}, 0};
   const bool is_one = farthest <= nearest * kOneSurface;
   const float border = 2.0f / (1.0f / nearest + 1.0f / farthest);
   Group near_group, far_group;
-  for (const glm::vec4& sample : samples) {
-    (is_one || sample.w < border ? near_group : far_group).add(sample);
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    (is_one || samples[s].w < border ? near_group : far_group).add(samples[s], static_cast<int>(s));
   }
-  if (far_group.count == 0) return {near_group.mean(), {}, 0};
-  if (near_group.count == 0) return {far_group.mean(), {}, 0};
-  if (near_group.count >= far_group.count) {
-    return {near_group.mean(), far_group.mean(), far_group.count};
+  if (far_group.count == 0) return {near_group.mean(), {}};
+  if (near_group.count == 0) return {far_group.mean(), {}};
+  const bool shows_near = near_group.count >= far_group.count;
+  const Group& shown = shows_near ? near_group : far_group;
+  const Group& other = shows_near ? far_group : near_group;
+  return {shown.mean(), other.mean(), other.count, shown.first};
+}
+
+void find_surfaces(const Image& colour, const Image& depth, int samples, const Rectangle& area,
+                   const SurfaceTargets& to, const Profile& profile) {
+  std::array<glm::vec4, kMaxSamples> of_pixel;
+  const auto count = static_cast<std::size_t>(samples);
+  for (int y = area.y_begin; y < area.y_end; ++y) {
+    for (int x = area.x_begin; x < area.x_end; ++x) {
+      for (std::size_t s = 0; s < count; ++s) {
+        of_pixel[s] = load_texel<Format::rgba16f>(colour, x, y * samples + static_cast<int>(s));
+      }
+      const PixelSurfaces surfaces = surfaces_of(std::span{of_pixel}.first(count));
+      store_texel(*to.picture, x, y, surfaces.texel, profile);
+      if (surfaces.other_samples > 0) store_texel(*to.other, x, y, surfaces.other, profile);
+      const auto column = static_cast<std::size_t>(x);
+      row<std::uint8_t>(*to.coverage, y)[column] = coverage_byte(surfaces.other_samples, samples);
+      if (to.depth == nullptr) continue;
+      row<float>(*to.depth, y)[column] = row<float>(depth, y * samples + surfaces.first)[column];
+    }
   }
-  return {far_group.mean(), near_group.mean(), near_group.count};
 }
 
 }  // namespace softfocus

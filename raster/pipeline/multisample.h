@@ -10,6 +10,7 @@
 
 #include "raster/images/image.h"
 #include "raster/numbers/profile.h"
+#include "raster/pipeline/state.h"
 
 namespace softfocus {
 
@@ -31,7 +32,8 @@ Image resolve(const Image& multisampled, int samples, const Profile& profile);
 struct PixelSurfaces {
   glm::vec4 texel;  ///< linear colour, and in alpha the depth in metres
   glm::vec4 other;  ///< of the other surface; anything if that has no part
-  int other_samples;
+  int other_samples = 0;
+  int first = 0;  ///< the first sample of `texel`'s surface
 };
 
 /// A pixel whose farthest depth is at most this many times the nearest shows one surface.
@@ -41,6 +43,19 @@ inline constexpr float kOneSurface = 1.03125f;
 /// samples before 2 / (1 / nearest + 1 / farthest), where circles of confusion have half their
 /// difference. Colours and depths are means, sums in the samples' order times 1 / count.
 PixelSurfaces surfaces_of(std::span<const glm::vec4> samples);
+
+/// Where a pass leaves what surfaces_of() makes of each pixel: images of the target's pixels.
+struct SurfaceTargets {
+  Image* picture = nullptr;   ///< RGBA16F
+  Image* other = nullptr;     ///< RGBA16F: the other surface; anything where it has no part
+  Image* coverage = nullptr;  ///< r8: the other surface's part of the pixel
+  Image* depth = nullptr;     ///< r32f: window depths of `picture`, at its surface's first sample
+};
+
+/// The surfaces of an area's pixels from multisampled images, of colour with depth in alpha and of
+/// window depths. Without to.depth none of these.
+void find_surfaces(const Image& colour, const Image& depth, int samples, const Rectangle& area,
+                   const SurfaceTargets& to, const Profile& profile);
 
 /// How an r8 image holds `count` of `samples`.
 inline std::uint8_t coverage_byte(int count, int samples) {

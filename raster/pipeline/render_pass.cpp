@@ -7,6 +7,7 @@
 
 #include "raster/images/texel.h"
 #include "raster/pipeline/lanes/rasterize_lanes.h"
+#include "raster/pipeline/lanes/resolve_lanes.h"
 #include "raster/threads/loops.h"
 
 namespace softfocus {
@@ -66,9 +67,11 @@ void clear_behind_in(const RenderPass& pass, const Rectangle& area, const glm::v
 // first, the VisibilityTile clears: it need only clear the pixels that show no triangle.
 class TileDrawing {
  public:
-  /// Draws in lanes go to `texels`, or to the target if that is null.
-  TileDrawing(const RenderPass& pass, const Rectangle& area, TileMemory& memory, std::byte* texels)
-      : pass_(pass), area_(area), memory_(memory), texels_(texels) {}
+  /// Draws in lanes go to `texels`, or to the target if that is null. `keeps_samples`: if surfaces
+  /// are wanted, the tile keeps their samples, as no draw needs the targets.
+  TileDrawing(const RenderPass& pass, const Rectangle& area, TileMemory& memory, std::byte* texels,
+              bool keeps_samples)
+      : pass_(pass), area_(area), memory_(memory), texels_(texels), keeps_samples_(keeps_samples) {}
 
   void draw(const TileWork& item) {
     if (item.draw->lane_steps != nullptr) {
@@ -92,8 +95,16 @@ class TileDrawing {
       clear();
       clear_behind_in(pass_, area_, *pass_.clear_colour, *pass_.clear_depth);
     }
+    if (keeps_samples_) {
+      resolve_samples();
+      return;
+    }
     leave_lanes(pass_.keep_depth);
     clear();
+    if (!pass_.surfaces) return;
+    const RenderTargets& targets = pass_.targets;
+    find_surfaces(*targets.colour[0], *targets.depth, targets.samples, area_, *pass_.surfaces,
+                  pass_.profile);
   }
 
  private:
@@ -124,6 +135,7 @@ class TileDrawing {
           kTexelBytes * static_cast<std::size_t>(area_.x_end - area_.x_begin);
       return;
     }
+    if (keeps_samples_) return keep_samples();
     const auto samples = static_cast<std::size_t>(pass_.targets.samples);
     for (std::size_t i = 0; i < memory_->layers; ++i) {
       Image& target =
@@ -133,6 +145,34 @@ class TileDrawing {
           first_texel(target, area_, pass_.targets.samples) + sample * target.stride_bytes;
       memory_->layer(i).stride_bytes = samples * target.stride_bytes;
     }
+  }
+
+  // The first sample's texels go to the picture, the others' to the tile's memory.
+  void keep_samples() {
+    VisibilityTile& tile = *memory_;
+    constexpr std::size_t kSampleBytes = kTilePixels * kTexelBytes;
+    const std::size_t bytes = (tile.layers - 1) * kSampleBytes;
+    if (tile.sample_texels_room < bytes) {
+      tile.sample_texels.reset(new std::byte[bytes]);
+      tile.sample_texels_room = bytes;
+    }
+    Image& picture = *pass_.surfaces->picture;
+    tile.front.texels = first_texel(picture, area_);
+    tile.front.stride_bytes = picture.stride_bytes;
+    for (std::size_t s = 1; s < tile.layers; ++s) {
+      tile.layer(s).texels = tile.sample_texels.get() + (s - 1) * kSampleBytes;
+      tile.layer(s).stride_bytes = kTileSize * kTexelBytes;
+    }
+  }
+
+  void resolve_samples() {
+    if (!has_begun_) begin_lanes();
+    VisibilityTile& tile = *memory_;
+    find_mixed(pass_.isa, tile);
+    list_further(tile);
+    clear_unseen(pass_.isa, tile, *pass_.clear_colour, pass_.profile);
+    shade_tile(tile);
+    resolve_surfaces(pass_.isa, tile, *pass_.surfaces, *pass_.clear_colour, pass_.profile);
   }
 
   void shade() {
@@ -165,16 +205,31 @@ class TileDrawing {
   Rectangle area_;
   TileMemory& memory_;
   std::byte* texels_;
+  bool keeps_samples_;
   bool has_begun_ = false;
   bool is_cleared_ = false;
 };
+
+bool is_in_lanes(std::span<const TileWork> work) {
+  return std::all_of(work.begin(), work.end(),
+                     [](const TileWork& item) { return item.draw->lane_steps != nullptr; });
+}
+
+// Whether a tile's triangles are shaded when all of them have passed.
+bool fits_once(std::span<const TileWork> work) {
+  std::size_t triangles = 0;
+  for (const TileWork& item : work) triangles += item.bins.size();
+  return triangles <= kMostVisible;
+}
 
 void draw_tile(const RenderPass& pass, const TileLists& lists, int tile, TileMemory& memory,
                std::byte* texels) {
   assert(!has_layers(pass.targets) ||
          pass.clear_colour.has_value() == pass.clear_depth.has_value());
-  TileDrawing drawing{pass, tile_area(lists, tile), memory, texels};
+  assert(!pass.surfaces || (pass.clear_colour && pass.clear_depth && pass.targets.samples > 1));
   const std::span<const TileWork> work = work_of_tile(lists, tile);
+  const bool keeps_samples = pass.surfaces && is_in_lanes(work) && fits_once(work);
+  TileDrawing drawing{pass, tile_area(lists, tile), memory, texels, keeps_samples};
   for (std::size_t i = 0; i < work.size(); ++i) {
     // The next item was listed long ago, and has left the caches.
     if (i + 1 < work.size()) __builtin_prefetch(work[i + 1].bins.data());
@@ -214,10 +269,7 @@ void draw_tile_aside(const RenderPass& pass, const TileLists& lists, int tile, T
     }
     return;
   }
-  const bool in_lanes = std::all_of(work.begin(), work.end(), [](const TileWork& item) {
-    return item.draw->lane_steps != nullptr;
-  });
-  if (in_lanes) {
+  if (is_in_lanes(work)) {
     draw_tile(pass, lists, tile, memory, texels);
     return;
   }

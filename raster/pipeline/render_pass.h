@@ -26,6 +26,7 @@
 #include "raster/pipeline/lanes/lane_chunk.h"
 #include "raster/pipeline/lanes/visibility_tile.h"
 #include "raster/pipeline/merge.h"
+#include "raster/pipeline/multisample.h"
 #include "raster/pipeline/state.h"
 #include "raster/threads/parallel.h"
 
@@ -43,6 +44,9 @@ struct RenderPass {
   std::optional<float> behind_before = {};
   /// Whether depths are wanted after finish(). If not, the depth buffer may hold anything then.
   bool keep_depth = true;
+  /// In a pass that clears: pixels' surfaces are wanted, and not the targets. These may hold
+  /// anything then, and are not touched in tiles whose draws are all in lanes.
+  std::optional<SurfaceTargets> surfaces = {};
   /// The vector unit of draws in lanes.
   Isa isa = Isa::scalar;
   std::vector<DrawCall> draws;

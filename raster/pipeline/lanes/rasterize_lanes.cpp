@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 
 #include "raster/images/texel.h"
 #include "raster/pipeline/multisample.h"
@@ -20,8 +19,6 @@ void rasterize_lanes(Isa isa, const LaneChunk& chunk, std::span<const Bin> bins,
                      const DrawCall& draw, const Profile& profile, VisibilityTile& tile) {
   SOFTFOCUS_KERNEL(isa, rasterize)(chunk, bins, draw, profile, tile);
 }
-
-void find_mixed(Isa isa, VisibilityTile& tile) { SOFTFOCUS_KERNEL(isa, find_mixed_in)(tile); }
 
 void clear_unseen(Isa isa, const VisibilityTile& tile, glm::vec4 value, const Profile& profile) {
   Image row = make_image(Format::rgba16f, kBlockSize, 1);
@@ -459,54 +456,6 @@ void rasterize(const LaneChunk& chunk, std::span<const Bin> bins, const DrawCall
   rasterize_all<DepthWriter<true, false, barycentric> >(chunk, bins, draw, profile, tile);
 }
 
-namespace {
-
-// The inverse of place_of_pixel().
-SOFTFOCUS_INLINE int tile_x(std::uint32_t place) {
-  return static_cast<int>(place / kBlockPixels % kTileBlocks * kBlockSize + (place >> 1 & 2) +
-                          (place & 1));
-}
-SOFTFOCUS_INLINE int tile_y(std::uint32_t place) {
-  return static_cast<int>(place / (kBlockPixels * kTileBlocks) * kBlockSize + (place >> 2 & 2) +
-                          (place >> 1 & 1));
-}
-
-}  // namespace
-
-void find_mixed_in(VisibilityTile& tile) {
-  tile.mixed.clear();
-  const int width = tile.area.x_end - tile.area.x_begin;
-  const int height = tile.area.y_end - tile.area.y_begin;
-  for (std::uint32_t place = 0; place < kTilePixels; place += kLanes) {
-    std::array<Ints, kMaxSamples> ids;
-    ids[0] = load(&tile.front.ids[place]);
-    const Mask shows = ids[0] > 0;
-    Mask mixed{};
-    for (std::size_t s = 1; s < tile.layers; ++s) {
-      ids[s] = load(&tile.layer(s).ids[place]);
-      mixed |= ~(ids[s] == ids[0]);
-    }
-    if (!any(mixed)) {
-      const Ints as_first = select(shows, splat(-1), Ints{});
-      for (std::size_t s = 1; s < tile.layers; ++s) store(&tile.layer(s).ids[place], as_first);
-      continue;
-    }
-    for (std::size_t s = 1; s < tile.layers; ++s) {
-      Ints marked = ids[s];
-      for (std::size_t r = s; r-- > 0;) {
-        const Mask same = (ids[r] == ids[s]) & (ids[s] > 0);
-        marked = select(same, splat(-1 - static_cast<std::int32_t>(r)), marked);
-      }
-      store(&tile.layer(s).ids[place], marked);
-    }
-    const int left = tile_x(place), top = tile_y(place);
-    mixed &= (left + lane_x() < width) & (top + lane_y() < height);
-    for (unsigned rest = lane_bits(mixed); rest != 0; rest &= rest - 1) {
-      tile.mixed.push_back(static_cast<std::uint16_t>(place + std::countr_zero(rest)));
-    }
-  }
-}
-
 // `texels`: a row of a block, four halves a texel.
 void set_unseen(const VisibilityTile& tile, const TileLayer& layer, const std::byte* texels) {
   constexpr std::size_t kTexelBytes = 8;
@@ -516,7 +465,7 @@ void set_unseen(const VisibilityTile& tile, const TileLayer& layer, const std::b
     const Ints ids = load(&layer.ids[place]);
     const unsigned unseen = equal_lane_bits(ids, Ints{});
     if (unseen == 0) continue;
-    const int left = tile_x(place), top = tile_y(place);
+    const int left = pixel_of_place(place).x, top = pixel_of_place(place).y;
     if (unseen == kAllLaneBits && left + kPartColumns <= width && top + kPartRows <= height) {
       std::byte* to = layer.texels + static_cast<std::size_t>(top) * layer.stride_bytes +
                       static_cast<std::size_t>(left) * kTexelBytes;

@@ -20,10 +20,6 @@ namespace softfocus {
 void rasterize_lanes(Isa isa, const LaneChunk& chunk, std::span<const Bin> bins,
                      const DrawCall& draw, const Profile& profile, VisibilityTile& tile);
 
-/// Of a tile of several samples: finds the pixels whose samples do not all show the same, and marks
-/// samples that show what one before them does. Needs an isa with vectors.
-void find_mixed(Isa isa, VisibilityTile& tile);
-
 /// Sets the pixels of a tile's layers that show nothing. Needs an isa with vectors.
 void clear_unseen(Isa isa, const VisibilityTile& tile, glm::vec4 value, const Profile& profile);
 

@@ -22,11 +22,6 @@ void for_each_pair(const VisibilityTile& tile, const Visit& visit) {
   }
 }
 
-std::byte* texel_of(const TileLayer& layer, int x, int y) {
-  return layer.texels + static_cast<std::size_t>(y) * layer.stride_bytes +
-         static_cast<std::size_t>(x) * kTexelBytes;
-}
-
 // Texels that were there before, and that nearer triangles have moved back to this layer.
 void move_back(const VisibilityTile& tile, std::size_t number) {
   const TileLayer& layer = tile.layer(number);
@@ -37,7 +32,8 @@ void move_back(const VisibilityTile& tile, std::size_t number) {
       const auto before = static_cast<std::size_t>(-1 - id);
       if (before == number) continue;
       const int column = x + static_cast<int>(i);
-      std::memcpy(texel_of(layer, column, y), texel_of(tile.layer(before), column, y), kTexelBytes);
+      std::memcpy(texel_at(layer, {column, y}), texel_at(tile.layer(before), {column, y}),
+                  kTexelBytes);
     }
   });
 }
@@ -166,7 +162,7 @@ void copy_to_samples(const VisibilityTile& tile) {
         if (id >= 0) continue;
         const auto from = static_cast<std::size_t>(-1 - id);
         const int column = x + static_cast<int>(i);
-        std::memcpy(texel_of(tile.layer(s), column, y), texel_of(tile.layer(from), column, y),
+        std::memcpy(texel_at(tile.layer(s), {column, y}), texel_at(tile.layer(from), {column, y}),
                     kTexelBytes);
       }
     }

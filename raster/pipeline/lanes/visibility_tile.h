@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -32,6 +33,13 @@ inline constexpr std::size_t place_of_pixel(int x, int y) {
   const int quad = (y & 2) + (x >> 1 & 1);
   const int place = block * kBlockPixels + quad * kQuadPixels + (y & 1) * 2 + (x & 1);
   return static_cast<std::size_t>(place);
+}
+
+/// The inverse.
+inline constexpr glm::ivec2 pixel_of_place(std::uint32_t place) {
+  const std::uint32_t block = place / kBlockPixels;
+  return {static_cast<int>(block % kTileBlocks * kBlockSize + (place >> 1 & 2) + (place & 1)),
+          static_cast<int>(block / kTileBlocks * kBlockSize + (place >> 2 & 2) + (place >> 1 & 1))};
 }
 
 /// A run of a tile's triangles that belong to one draw.
@@ -61,6 +69,12 @@ struct TileLayer {
   std::byte* texels;
   std::size_t stride_bytes;
 };
+
+inline std::byte* texel_at(const TileLayer& layer, const glm::ivec2& at) {
+  constexpr std::size_t kTexelBytes = bytes_per_texel(Format::rgba16f);
+  return layer.texels + static_cast<std::size_t>(at.y) * layer.stride_bytes +
+         static_cast<std::size_t>(at.x) * kTexelBytes;
+}
 
 /// What is shaded next.
 struct VisibilityTile {

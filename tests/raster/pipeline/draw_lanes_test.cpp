@@ -51,6 +51,9 @@ using Vertices = std::vector<VertexOutput<4>>;
 struct Drawn {
   Image colour;
   Image depth;
+  // If surfaces are wanted, with colour and depth.
+  Image other = {};
+  Image coverage = {};
 };
 
 struct Target {
@@ -65,11 +68,21 @@ LaneStages<test::ListedVertices<4>, MixedColour> stages_for(Isa isa) {
 }
 
 Drawn draw_mixed(Isa isa, const Target& target, const DrawState& state, const Vertices& vertices,
-                 const Profile& profile, int threads = 1) {
+                 const Profile& profile, int threads = 1, bool wants_surfaces = false) {
   const int rows = target.height * target.samples;
   Drawn drawn{make_image(Format::rgba16f, target.width, rows),
               make_image(Format::r32f, target.width, rows)};
+  Drawn surfaces;
   RenderPass pass;
+  if (wants_surfaces) {
+    surfaces = {make_image(Format::rgba16f, target.width, target.height),
+                make_image(Format::r32f, target.width, target.height),
+                make_image(Format::rgba16f, target.width, target.height),
+                make_image(Format::r8, target.width, target.height)};
+    // What is not written shows.
+    clear_image(surfaces.coverage, glm::vec4{1.0f}, profile);
+    pass.surfaces = {&surfaces.colour, &surfaces.other, &surfaces.coverage, &surfaces.depth};
+  }
   pass.targets.samples = target.samples;
   pass.targets.colour[0] = &drawn.colour;
   pass.targets.depth = &drawn.depth;
@@ -88,7 +101,7 @@ Drawn draw_mixed(Isa isa, const Target& target, const DrawState& state, const Ve
     draw_in_lanes(pass, state, indices, count, vertex_stage, MixedColour{}, stages_for(isa));
   }
   finish(pass, pool);
-  return drawn;
+  return wants_surfaces ? std::move(surfaces) : std::move(drawn);
 }
 
 // Triangles about points in the window, of edges up to `size` pixels.
@@ -127,6 +140,35 @@ void check_all_isas(Target target, const DrawState& state, const Vertices& verti
   }
 }
 
+// That tiles find the surfaces that images of all samples have.
+void check_surfaces(Target target, const Vertices& vertices, const Profile& profile) {
+  for (const int samples : {4, 8}) {
+    target.samples = samples;
+    const Drawn expected = draw_mixed(Isa::scalar, target, {}, vertices, profile, 1, true);
+    int mixed = 0;
+    for (const Isa isa : available_isas()) {
+      if (isa == Isa::scalar) continue;
+      const Drawn drawn = draw_mixed(isa, target, {}, vertices, profile, 2, true);
+      INFO("isa ", isa_name(isa));
+      INFO("samples ", samples);
+      CHECK(equal(drawn.colour, expected.colour));
+      CHECK(equal(drawn.depth, expected.depth));
+      CHECK(equal(drawn.coverage, expected.coverage));
+      int different = 0;
+      for (int y = 0; y < target.height; ++y) {
+        for (int x = 0; x < target.width; ++x) {
+          if (load_texel(expected.coverage, x, y).x == 0.0f) continue;
+          ++mixed;
+          different +=
+              !test::same_bits(load_texel(drawn.other, x, y), load_texel(expected.other, x, y));
+        }
+      }
+      CHECK(different == 0);
+    }
+    CHECK(mixed > 0);
+  }
+}
+
 constexpr std::array kProfileNames{"ieee", "d3d11", "llvmpipe", "llvmpipe-sse41"};
 constexpr Target kTarget{150, 97};
 
@@ -146,6 +188,17 @@ TEST_CASE("lanes: triangles of every size have the scalar form's bits") {
     test::Random random{501};
     for (const double size : {0.4, 1.5, 6.0, 40.0, 200.0, 3000.0}) {
       check_all_isas(kTarget, {}, random_triangles(random, kTarget, fewer(1500), size),
+                     profile_named(name));
+    }
+  }
+}
+
+TEST_CASE("lanes: a tile finds its pixels' surfaces as the samples' images have them") {
+  for (const char* name : kProfileNames) {
+    INFO("profile ", name);
+    test::Random random{512};
+    for (const double size : {1.5, 6.0, 40.0}) {
+      check_surfaces(kTarget, random_triangles(random, kTarget, fewer(1500), size),
                      profile_named(name));
     }
   }
