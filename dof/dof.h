@@ -39,6 +39,13 @@ struct TransparentLayer {
   ConstImageView opacity;
 };
 
+/// Pixels that two surfaces share, as an edge's are: pictures of the scene's size.
+struct EdgeSurfaces {
+  ConstImageView coverage = {};  ///< r8: the part of a pixel that `other` has; without texels: none
+  ConstImageView shown = {};     ///< RGBA16F: the surface with the rest. It may be the scene
+  ConstImageView other = {};     ///< RGBA16F: the other surface; anything where it has no part
+};
+
 /// The frame that a picture is of, for pipelines (dof/pipelines).
 struct FrameValues {
   double near_m = 0.1, far_m = 1000.0;  ///< the camera's planes
@@ -92,6 +99,9 @@ struct DofInput {
   /// itself, so that each surface has its own circle, and lays them over each other
   /// (transparent.h).
   std::span<const TransparentLayer> transparent = {};
+  /// Of `scene`, which shows one surface in each pixel; without a coverage none. apply() smooths the
+  /// edges of what the method makes of it (smooth_edges.h).
+  EdgeSurfaces edges = {};
   /// Signed radii in pixels, row by row from the top, in place of those that the lens gives, or
   /// empty. Only methods that take_radii read them.
   std::span<const float> radii_px = {};

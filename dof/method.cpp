@@ -25,6 +25,7 @@
 #include "dof/scatter/aperture_scatter.h"
 #include "dof/scatter/layers.h"
 #include "dof/scatter/scatter.h"
+#include "dof/smooth_edges.h"
 #include "dof/transparent.h"
 #include "dof/two_pass/two_pass.h"
 #include "raster/images/image.h"
@@ -150,6 +151,16 @@ const char* input_error(const DofInput& input, const ConstImageView& result) {
     if (const char* error = layer_error(layer.colour)) return error;
     if (const char* error = layer_error(layer.opacity)) return error;
   }
+  const EdgeSurfaces& edges = input.edges;
+  if (edges.coverage.texels != nullptr) {
+    if (edges.coverage.format != Format::r8 || edges.coverage.width != scene.width ||
+        edges.coverage.height != scene.height || std::abs(edges.coverage.stride_bytes) < scene.width) {
+      return "the edges' coverage is not r8 of the scene's size";
+    }
+    if (const char* error = layer_error(edges.shown)) return error;
+    if (const char* error = layer_error(edges.other)) return error;
+    if (!input.radii_px.empty()) return "radii are of one surface a pixel, and edges have two";
+  }
   if (!input.transparent.empty() && !input.radii_px.empty()) {
     return "radii are of one picture, and transparent layers are pictures of their own";
   }
@@ -181,6 +192,9 @@ void apply(const Method& method, const DofInput& input, const ImageView& result,
     method.filter(of, to, pool);
   };
   filter(input, result);
+  DofInput of_edges = input;
+  if (method.filter == pinhole) of_edges.settings.coc.radius_at_infinity_px = 0.0f;
+  smooth_edges(of_edges, result, pool);
   lay_transparent_over(input, result, filter, pool);
 }
 

@@ -131,6 +131,32 @@ using Samples = unsigned;
 
 constexpr bool has_sample(Samples samples, int s) { return (samples >> s & 1u) != 0; }
 
+// What a triangle covers of a row of pixels: a span for each of their samples.
+struct SampleSpans {
+  std::array<Span, kMaxSamples> of_samples;
+  std::size_t count = 0;
+  Span all{};  // none if it is empty
+
+  SampleSpans() = default;
+  SampleSpans(const TriangleSetup& setup, int samples, int y, const Rectangle& area)
+      : all{area.x_end, area.x_begin} {
+    for (const glm::ivec2& place : sample_places(samples)) {
+      const Span span = covered_span(setup, y, area.x_begin, area.x_end, place);
+      of_samples[count++] = span;
+      if (span.x_begin >= span.x_end) continue;
+      all = {std::min(all.x_begin, span.x_begin), std::max(all.x_end, span.x_end)};
+    }
+  }
+
+  Samples covered(int x) const {
+    Samples samples = 0;
+    for (std::size_t s = 0; s < count; ++s) {
+      if (of_samples[s].x_begin <= x && x < of_samples[s].x_end) samples |= 1u << s;
+    }
+    return samples;
+  }
+};
+
 // Those that alpha leaves of a pixel's `count`.
 inline Samples alpha_coverage(float alpha, int count) {
   Samples kept = 0;
@@ -230,20 +256,10 @@ void shade_triangle(const Draw& draw, const Triangle<N>& triangle, const Rectang
   const Rectangle area = intersection(tile, setup.bounds);
   const Interpolator interpolator{triangle, draw.profile,
                                   decltype(draw.fragment_stage)::kInterpolation};
-  const std::span<const glm::ivec2> places = sample_places(draw.targets.samples);
-  std::array<Span, kMaxSamples> spans;
   for (int y = area.y_begin; y < area.y_end; ++y) {
-    Span row{area.x_end, area.x_begin};
-    for (std::size_t s = 0; s < places.size(); ++s) {
-      spans[s] = covered_span(setup, y, area.x_begin, area.x_end, places[s]);
-      if (spans[s].x_begin >= spans[s].x_end) continue;
-      row = {std::min(row.x_begin, spans[s].x_begin), std::max(row.x_end, spans[s].x_end)};
-    }
-    for (int x = row.x_begin; x < row.x_end; ++x) {
-      Samples covered = 0;
-      for (std::size_t s = 0; s < places.size(); ++s) {
-        if (spans[s].x_begin <= x && x < spans[s].x_end) covered |= 1u << s;
-      }
+    const SampleSpans spans{setup, draw.targets.samples, y, area};
+    for (int x = spans.all.x_begin; x < spans.all.x_end; ++x) {
+      const Samples covered = spans.covered(x);
       if (covered != 0) shade_fragment(draw, triangle, interpolator, x, y, covered);
     }
   }

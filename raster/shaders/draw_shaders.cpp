@@ -40,8 +40,9 @@ struct FragmentInput {
 struct Waiting {
   int x = 0, y = 0;
   float depth = 0.0f;
+  std::array<float, kMaxSamples> depths{};
   bool front_facing = true;
-  bool is_covered = true;  ///< or only there for its neighbours' differences
+  draw_detail::Samples covered = 0;  ///< none: only there for its neighbours' differences
 };
 
 struct FragmentMemory {
@@ -155,7 +156,8 @@ struct ShadersRecorded {
       has_output[location] = true;
     }
     if (draw.texel.colour || draw.texel.most_w || draw.texel.opacity) has_output[0] = true;
-    tests_come_last = depth_output.is_there || draw.fragment->killed.is_there;
+    tests_come_last = depth_output.is_there || draw.fragment->killed.is_there ||
+                      (state.alpha_to_coverage && targets.samples > 1);
   }
 };
 
@@ -271,8 +273,11 @@ class FragmentBatches {
       return;
     }
     for (int y = area.y_begin; y < area.y_end; ++y) {
-      const Span span = covered_span(triangle.setup, y, area.x_begin, area.x_end);
-      for (int x = span.x_begin; x < span.x_end; ++x) add_one(shading, x, y, true);
+      const draw_detail::SampleSpans spans{triangle.setup, draw_.targets.samples, y, area};
+      for (int x = spans.all.x_begin; x < spans.all.x_end; ++x) {
+        const draw_detail::Samples covered = spans.covered(x);
+        if (covered != 0) add_one(shading, x, y, covered);
+      }
     }
   }
 
@@ -309,61 +314,79 @@ class FragmentBatches {
   void add_blocks(const Shading<Interpolator>& shading, const TriangleSetup& setup,
                   const Rectangle& area) {
     for (int y = area.y_begin & ~1; y < area.y_end; y += 2) {
-      std::array<Span, 2> spans{};
+      std::array<draw_detail::SampleSpans, 2> spans;
       Span both{area.x_end, area.x_begin};
       for (int row = 0; row < 2; ++row) {
         if (y + row < area.y_begin || y + row >= area.y_end) continue;
-        const Span span = covered_span(setup, y + row, area.x_begin, area.x_end);
-        spans[static_cast<std::size_t>(row)] = span;
-        if (span.x_begin >= span.x_end) continue;
-        both = {std::min(both.x_begin, span.x_begin), std::max(both.x_end, span.x_end)};
+        draw_detail::SampleSpans& own = spans[static_cast<std::size_t>(row)];
+        own = {setup, draw_.targets.samples, y + row, area};
+        if (own.all.x_begin >= own.all.x_end) continue;
+        both = {std::min(both.x_begin, own.all.x_begin), std::max(both.x_end, own.all.x_end)};
       }
-      const auto covers = [&](int x, int row) {
-        const Span& span = spans[static_cast<std::size_t>(row)];
-        return x >= span.x_begin && x < span.x_end;
-      };
       for (int x = both.x_begin & ~1; x < both.x_end; x += 2) {
-        if (!covers(x, 0) && !covers(x + 1, 0) && !covers(x, 1) && !covers(x + 1, 1)) continue;
-        add_block(shading, x, y, {covers(x, 0), covers(x + 1, 0), covers(x, 1), covers(x + 1, 1)});
+        const std::array covered{spans[0].covered(x), spans[0].covered(x + 1), spans[1].covered(x),
+                                 spans[1].covered(x + 1)};
+        if ((covered[0] | covered[1] | covered[2] | covered[3]) == 0) continue;
+        add_block(shading, x, y, covered);
       }
     }
   }
 
   template <class Interpolator>
   void add_block(const Shading<Interpolator>& shading, int x, int y,
-                 const std::array<bool, 4>& covered) {
+                 const std::array<draw_detail::Samples, 4>& covered) {
     const std::size_t before = memory_.fragments.size();
     for (int i = 0; i < 4; ++i) {
       put(shading, x + (i & 1), y + (i >> 1), covered[static_cast<std::size_t>(i)]);
     }
     bool any = false;
-    for (std::size_t i = before; i < before + 4; ++i) any = any || memory_.fragments[i].is_covered;
+    for (std::size_t i = before; i < before + 4; ++i) any = any || memory_.fragments[i].covered != 0;
     if (!any) memory_.fragments.resize(before);
     if (memory_.fragments.size() == lanes_) flush();
   }
 
   template <class Interpolator>
-  void add_one(const Shading<Interpolator>& shading, int x, int y, bool is_covered) {
-    put(shading, x, y, is_covered);
-    if (!memory_.fragments.back().is_covered) memory_.fragments.pop_back();
+  void add_one(const Shading<Interpolator>& shading, int x, int y, draw_detail::Samples covered) {
+    put(shading, x, y, covered);
+    if (memory_.fragments.back().covered == 0) memory_.fragments.pop_back();
     if (memory_.fragments.size() == lanes_) flush();
   }
 
   /// Puts a fragment behind those that wait. It counts as not covered if it fails the tests, where
   /// these come before the shader.
   template <class Interpolator>
-  void put(const Shading<Interpolator>& shading, int x, int y, bool is_covered) {
+  void put(const Shading<Interpolator>& shading, int x, int y, draw_detail::Samples covered) {
     const auto pixel = shading.first.pixel(x, y);
-    const float depth = draw_detail::clamped_depth(shading.first.depth(pixel), draw_.profile);
-    if (is_covered && !draw_.tests_come_last) {
-      is_covered = draw_detail::passes_tests(draw_, x, y, depth, shading.front_facing);
-    }
+    const auto depth_at = [&](const auto& at) {
+      return draw_detail::clamped_depth(shading.first.depth(at), draw_.profile);
+    };
     const std::size_t lane = memory_.fragments.size();
-    memory_.fragments.push_back({x, y, depth, shading.front_facing, is_covered});
+    Waiting& fragment = memory_.fragments.emplace_back(
+        Waiting{x, y, depth_at(pixel), {}, shading.front_facing, covered});
+    const std::span<const glm::ivec2> places = sample_places(draw_.targets.samples);
+    for (std::size_t s = 0; s < places.size(); ++s) {
+      fragment.depths[s] = places.size() == 1 ? fragment.depth
+                                              : depth_at(shading.first.pixel(x, y, places[s]));
+    }
+    if (!draw_.tests_come_last) fragment.covered = tested(fragment, fragment.depths);
     for (std::size_t i = 0; i < draw_.inputs.size(); ++i) {
       memory_.inputs[i * lanes_ + lane] = input(shading, pixel, i, memory_.fragments.back());
     }
     if (draw_.draw.texel.most_w) memory_.w[lane] = shading.first.varying(pixel, kPositionVarying);
+  }
+
+  /// Those of its samples that pass.
+  draw_detail::Samples tested(const Waiting& fragment, const std::array<float, kMaxSamples>& depths) const {
+    const int count = draw_.targets.samples;
+    draw_detail::Samples passing = 0;
+    for (int s = 0; s < count; ++s) {
+      if (draw_detail::has_sample(fragment.covered, s) &&
+          draw_detail::passes_tests(draw_, fragment.x, fragment.y * count + s,
+                                    depths[static_cast<std::size_t>(s)], fragment.front_facing)) {
+        passing |= 1u << s;
+      }
+    }
+    return passing;
   }
 
   template <class Interpolator, class Pixel>
@@ -395,7 +418,7 @@ class FragmentBatches {
       }
       case SpirvBuiltin::front_facing: return fragment.front_facing ? ~0u : 0u;
       case SpirvBuiltin::primitive_id: return shading.number;
-      case SpirvBuiltin::helper_invocation: return fragment.is_covered ? 0u : ~0u;
+      case SpirvBuiltin::helper_invocation: return fragment.covered != 0 ? 0u : ~0u;
       default: return 0;
     }
   }
@@ -422,28 +445,36 @@ class FragmentBatches {
   }
 
   void merge(std::size_t lane) const {
-    const Waiting& fragment = memory_.fragments[lane];
-    if (!fragment.is_covered) return;
-    const int x = fragment.x, y = fragment.y;
-    float depth = fragment.depth;
+    Waiting fragment = memory_.fragments[lane];
+    if (fragment.covered == 0) return;
+    const int count = draw_.targets.samples;
     if (draw_.tests_come_last) {
       if (number_of(draw_.draw.fragment->killed, lane) != 0) return;
       if (draw_.depth_output.is_there) {
         const float written = std::bit_cast<float>(number_of(draw_.depth_output, lane));
-        depth = written <= 1.0f ? std::max(written, 0.0f) : 1.0f;
+        fragment.depth = written <= 1.0f ? std::max(written, 0.0f) : 1.0f;
+        fragment.depths.fill(fragment.depth);
       }
-      if (!draw_detail::passes_tests(draw_, x, y, depth, fragment.front_facing)) return;
+      if (draw_.state.alpha_to_coverage && count > 1) {
+        fragment.covered &= draw_detail::alpha_coverage(colour_of(0, lane).w, count);
+      }
+      fragment.covered = tested(fragment, fragment.depths);
+      if (fragment.covered == 0) return;
     }
+    const int x = fragment.x, y = fragment.y;
     if (has_layers(draw_.targets)) {
       // Fragments of the batch may have come into its place since it was tested.
-      if (!reaches_layers(draw_.targets, x, y, depth)) return;
-      insert_into_layers(draw_.targets, x, y, depth, colour_of(0, lane), draw_.profile);
+      if (!reaches_layers(draw_.targets, x, y, fragment.depth)) return;
+      insert_into_layers(draw_.targets, x, y, fragment.depth, colour_of(0, lane), draw_.profile);
       return;
     }
     for (std::size_t i = 0; i < kMaxColourTargets; ++i) {
       if (draw_.targets.colour[i] == nullptr || !draw_.has_output[i]) continue;
-      write_colour(draw_.state.colour[i], *draw_.targets.colour[i], x, y, colour_of(i, lane),
-                   draw_.profile);
+      for (int s = 0; s < count; ++s) {
+        if (!draw_detail::has_sample(fragment.covered, s)) continue;
+        write_colour(draw_.state.colour[i], *draw_.targets.colour[i], x, y * count + s,
+                     colour_of(i, lane), draw_.profile);
+      }
     }
   }
 };

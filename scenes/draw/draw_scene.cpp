@@ -215,7 +215,9 @@ PreparedScene prepare_scene(const Scene& scene, const Profile& profile, ThreadPo
 }
 
 PreparedScene prepare_surfaces(const Scene& scene, const Profile& profile, ThreadPool& pool) {
-  PreparedScene prepared{&scene, has_transparent(scene), {}, {}, {}, {}, {}, {}, {}};
+  PreparedScene prepared{};
+  prepared.scene = &scene;
+  prepared.has_transparent = has_transparent(scene);
   prepared.pass.profile = profile;
   prepared.pass.isa = pool.isa();
   prepared.transparent_pass.profile = profile;
@@ -363,6 +365,7 @@ void draw_in_passes(const PreparedScene& prepared, const CameraMatrices& camera,
                     std::span<const Light> lights, RenderPass& pass, ThreadPool& pool) {
   const Scene& scene = *prepared.scene;
   const std::optional<float> behind_before = std::exchange(pass.behind_before, std::nullopt);
+  const std::optional<SurfaceTargets> surfaces = std::exchange(pass.surfaces, std::nullopt);
   pass.clear_colour = clear_colour(scene);
   pass.clear_depth = 1.0f;
   pass.keep_depth = true;
@@ -381,6 +384,7 @@ void draw_in_passes(const PreparedScene& prepared, const CameraMatrices& camera,
     draw_surface(prepared, surface, pass);
     chunks += more;
   }
+  pass.surfaces = surfaces;
   finish(pass, pool);
   pass.behind_before = behind_before;
   if (behind_before && has_layers(pass.targets))
@@ -467,6 +471,37 @@ void draw_layers(PreparedScene& prepared, const CameraMatrices& camera, double f
   draw_lit(prepared, camera, frame, layers, pool);
 }
 
+namespace {
+
+void make_sized(Image& image, int width, int height, Format format = Format::rgba16f) {
+  if (image.width == width && image.height == height && !image.bytes.empty()) return;
+  image = make_image(format, width, height);
+}
+
+}  // namespace
+
+void draw_surfaces(PreparedScene& prepared, const CameraMatrices& camera, double frame, int samples,
+                   SurfacePictures& pictures, ThreadPool& pool) {
+  const int width = pictures.shown.width, height = pictures.shown.height;
+  make_sized(pictures.other, width, height);
+  make_sized(pictures.coverage, width, height, Format::r8);
+  // Touched where draws are not in lanes, or in several passes.
+  make_sized(prepared.sampled_colour, width, height * samples);
+  make_sized(prepared.sampled_depth, width, height * samples, Format::r32f);
+  RenderPass& pass = prepared.pass;
+  pass.targets.colour[0] = &prepared.sampled_colour;
+  pass.targets.depth = &prepared.sampled_depth;
+  pass.targets.behind = {};
+  pass.targets.samples = samples;
+  pass.behind_before = {};
+  pass.surfaces = {&pictures.shown, &pictures.other, &pictures.coverage,
+                   of_size(prepared.depth, pictures.shown)};
+  const std::array layers{&pictures.shown, &pictures.other};
+  draw_lit(prepared, camera, frame, layers, pool);
+  pass.targets.samples = 1;
+  pass.surfaces.reset();
+}
+
 Image draw_scene(const Scene& scene, const CameraMatrices& camera, double frame, int width,
                  int height, const Profile& profile, ThreadPool& pool) {
   Image picture = make_image(Format::rgba16f, width, height);
@@ -487,27 +522,29 @@ std::vector<Image> draw_layers(const Scene& scene, const CameraMatrices& camera,
   return pictures;
 }
 
-namespace {
-
-void make_sized(Image& image, int width, int height) {
-  if (image.width == width && image.height == height && !image.bytes.empty()) return;
-  image = make_image(Format::rgba16f, width, height);
-}
-
-}  // namespace
-
 void draw_parts(PreparedScene& prepared, const CameraMatrices& camera, double frame, int width,
                 int height, std::size_t layers, FrameParts& parts, ThreadPool& pool,
-                std::optional<double> behind_before_m) {
+                std::optional<double> behind_before_m, int samples) {
   make_sized(parts.opaque, width, height);
   parts.transparent.clear();
   parts.behind.resize(layers > 1 ? layers - 1 : 0);
   for (Image& layer : parts.behind) make_sized(layer, width, height);
+  parts.has_edges = false;
   if (layers == 0) {
     draw_scene(prepared, camera, frame, parts.opaque, pool);
     return;
   }
-  draw_layers(prepared, camera, frame, parts.opaque, parts.behind, pool, behind_before_m);
+  parts.has_edges = samples > 1 && !prepared.shadows;
+  const bool shows_edges = parts.has_edges && layers == 1;
+  if (parts.has_edges) {
+    Image& shown = parts.edges.shown;
+    shows_edges ? std::swap(shown, parts.opaque) : make_sized(shown, width, height);
+    draw_surfaces(prepared, camera, frame, samples, parts.edges, pool);
+    if (shows_edges) parts.opaque = std::exchange(shown, {});
+  }
+  if (!shows_edges) {
+    draw_layers(prepared, camera, frame, parts.opaque, parts.behind, pool, behind_before_m);
+  }
   parts.transparent = draw_transparent(prepared, camera, frame, parts.opaque, pool);
 }
 

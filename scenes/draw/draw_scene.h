@@ -65,17 +65,18 @@ Image draw_scene(const Scene& scene, const CameraMatrices& camera, double frame,
 
 /// A scene made ready for many frames: decoded textures, and memory to use again.
 struct PreparedScene {
-  const Scene* scene;
-  bool has_transparent;
-  std::vector<DecodedTexture> textures;  ///< decoded, for drawing in lanes
-  RenderPass pass;
-  Image depth;
-  std::vector<Image> depths_behind;  ///< of the layers behind the first
+  const Scene* scene = nullptr;
+  bool has_transparent = false;
+  std::vector<DecodedTexture> textures{};  ///< decoded, for drawing in lanes
+  RenderPass pass{};
+  Image depth{};
+  std::vector<Image> depths_behind{};       ///< of the layers behind the first
+  Image sampled_colour{}, sampled_depth{};  ///< of several samples a pixel
   // If the scene has transparent surfaces.
-  RenderPass transparent_pass;
-  TransparentTargets transparent;
+  RenderPass transparent_pass{};
+  TransparentTargets transparent{};
   /// If a light of the scene has shadows.
-  std::shared_ptr<SceneShadows> shadows;
+  std::shared_ptr<SceneShadows> shadows{};
   /// Told how many points of soft lights have been drawn by; may be empty.
   std::function<void(int points)> on_light_points = {};
 };
@@ -109,6 +110,18 @@ void draw_layers(PreparedScene& prepared, const CameraMatrices& camera, double f
 std::vector<Image> draw_layers(const Scene& scene, const CameraMatrices& camera, double frame,
                                int width, int height, std::size_t layers, const Profile& profile,
                                ThreadPool& pool);
+
+/// Pictures of the surfaces that pixels show, each pixel two at most, as EdgeSurfaces has them:
+/// RGBA16F, and an r8 coverage.
+struct SurfacePictures {
+  Image shown{}, other{}, coverage{};
+};
+
+/// The nearest opaque surfaces at 4 or 8 samples a pixel. `shown` is like draw_layers()'s picture,
+/// but for pixels on an edge: it has the surface that has the larger part of them, with the mean of
+/// the colours that it has there.
+void draw_surfaces(PreparedScene& prepared, const CameraMatrices& camera, double frame, int samples,
+                   SurfacePictures& pictures, ThreadPool& pool);
 
 /// The transparent surfaces before a picture that draw_layers() has just drawn of the same frame,
 /// as depth of field takes them: the nearest layer first, and none that is empty.
@@ -151,16 +164,21 @@ struct FrameParts {
   std::vector<Image> behind;                    ///< and its others
   std::vector<TransparentPicture> transparent;  ///< before `opaque`
   Image blended;                                ///< these over it; none if nothing is transparent
+  /// The opaque picture's edges, if it has some. Of one layer `opaque` is what they show, and
+  /// `shown` is empty.
+  SurfacePictures edges{};
+  bool has_edges = false;
 
   /// All of it, as draw_scene() has it. Needs blend().
   const Image& picture() const { return transparent.empty() ? opaque : blended; }
 };
 
 /// Draws a frame, with `layers` - 1 opaque surfaces behind the first, as draw_layers(), into the
-/// memory of `parts` as far as it has the size; without blend(). 0 layers: draw_scene() alone.
+/// memory of `parts` as far as it has the size; without blend(). 0 layers: draw_scene() alone. With
+/// 4 or 8 samples a pixel it has edges, unless the scene has shadows.
 void draw_parts(PreparedScene& prepared, const CameraMatrices& camera, double frame, int width,
                 int height, std::size_t layers, FrameParts& parts, ThreadPool& pool,
-                std::optional<double> behind_before_m = {});
+                std::optional<double> behind_before_m = {}, int samples = 1);
 
 void blend(FrameParts& parts, const Profile& profile, ThreadPool& pool);
 
@@ -172,6 +190,11 @@ auto with_dof_input(const FrameParts& parts, const DofSettings& settings, const 
                     const Use& use) {
   const std::vector<ConstImageView> behind{parts.behind.begin(), parts.behind.end()};
   const bool is_one = parts.transparent.empty() || !radii_px.empty();
+  EdgeSurfaces edges;
+  if (parts.has_edges && radii_px.empty()) {
+    const SurfacePictures& of = parts.edges;
+    edges = {of.coverage, of.shown.bytes.empty() ? parts.opaque : of.shown, of.other};
+  }
   const std::vector<TransparentLayer> transparent =
       is_one ? std::vector<TransparentLayer>{} : views_of(parts.transparent);
   return use(DofInput{.scene = is_one ? parts.picture() : parts.opaque,
@@ -180,6 +203,7 @@ auto with_dof_input(const FrameParts& parts, const DofSettings& settings, const 
                       .objects = objects,
                       .behind = behind,
                       .transparent = transparent,
+                      .edges = edges,
                       .radii_px = radii_px});
 }
 

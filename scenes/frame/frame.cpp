@@ -8,6 +8,7 @@
 #include "dof/halve.h"
 #include "dof/lens.h"
 #include "dof/show.h"
+#include "dof/smooth_edges.h"
 #include "raster/images/texel.h"
 #include "scenes/draw/draw_scene.h"
 #include "scenes/draw/frame_matrices.h"
@@ -59,6 +60,14 @@ float largest_circle_px(const FrameParts& parts, const PixelCoc& coc, ThreadPool
   return most;
 }
 
+// Without depth of field.
+Image pinhole_of(const Shot& shot, const FrameParts& parts, ThreadPool& pool) {
+  if (!parts.has_edges) return parts.picture();
+  return with_dof_input(parts, {}, shot.profile, {}, {}, [&](const DofInput& input) {
+    return apply(*find_method("pinhole"), input, pool);
+  });
+}
+
 Image map_of(const Shot& shot, const Image& drawn, const std::optional<UsedLens>& lens) {
   switch (shot.show) {
     case Show::coc: return show_coc(drawn, lens->settings.coc, lens->settings.max_coc_px);
@@ -87,6 +96,11 @@ Image filtered(const Shot& shot, const DrawnFrame& drawn, const UsedLens& lens, 
   if (shot.arithmetic != Arithmetic::floats) {
     Image result = picture_like(parts.picture(), memory);
     two_pass_in(shot.arithmetic, {parts.picture(), lens.settings, shot.profile}, result, pool);
+    // What is transparent is in the picture, and edges behind it are not.
+    if (parts.has_edges && parts.transparent.empty()) {
+      with_dof_input(parts, lens.settings, shot.profile, {}, {},
+                     [&](const DofInput& input) { smooth_edges(input, result, pool); });
+    }
     return result;
   }
   const std::size_t layers = layers_of(shot);
@@ -207,8 +221,10 @@ void draw_shot(const Shot& shot, FrameMemory& memory, DrawnFrame& drawn, ThreadP
   memory.prepared->on_light_points = hooks.on_light_points;
   const bool is_after_others = !shot.effects.empty() && is_of_frames(*shot.effects.front().effect);
   if (!is_after_others || drawn.layers > 1) {
+    // Maps show one surface a pixel; methods that draw the scene have --jitter.
+    const bool smooths = shot.show == Show::pinhole || is_filtered(shot);
     draw_parts(*memory.prepared, drawn.view, shot.frame, width, height, drawn.layers, drawn.parts,
-               pool, sharp_depth(shot));
+               pool, sharp_depth(shot), smooths && !is_after_others ? shot.samples : 1);
     if (shot.blends) blend(drawn.parts, shot.profile, pool);
   }
   if (is_after_others) {
@@ -300,7 +316,8 @@ Frame make_picture(const Shot& shot, const DrawnFrame& drawn, const std::optiona
   const UsedLens used = lens.value_or(UsedLens{});
   if (shot.show != Show::image) {
     tell(hooks, FrameStage::filtering);
-    frame.picture = map_of(shot, drawn.parts.picture(), lens);
+    frame.picture = shot.show == Show::pinhole ? pinhole_of(shot, drawn.parts, pool)
+                                               : map_of(shot, drawn.parts.picture(), lens);
   } else if (shot.shard) {
     tell(hooks, FrameStage::sampling);
     frame.sums = accumulation_sums(views_of(shot, drawn, used, memory, hooks),

@@ -67,6 +67,7 @@ struct Shot {
   double frame = 0.0;
   int width = 0, height = 0;  ///< of the picture
   int supersample = 1;        ///< 1 or 2: what is drawn has so many times the width and height
+  int samples = 1;            ///< of a pixel, 1, 4 or 8: several make edges smooth
   Show show = Show::image;
   MethodChoice method = {};
   Arithmetic arithmetic = Arithmetic::floats;  ///< of two-pass

@@ -36,6 +36,7 @@ std::string why_whole(const Shot& shot, Isa isa) {
   if (!is_two_pass(shot) && !is_sharp) return "only two-pass and pinhole work by rows";
   if (shot.arithmetic != Arithmetic::floats) return "--arithmetic has no other form";
   if (shot.supersample != 1) return "--supersample halves it";
+  if (shot.samples != 1) return "--multisample smooths edges across rows";
   if (!shot.effects.empty()) return "effects are of the whole picture";
   if (shot.layers.value_or(1) > 1) return "layers are drawn together";
   if (shot.lens && (shot.lens->focus_at || !shot.lens->sharp_depths.empty())) {

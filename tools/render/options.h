@@ -35,6 +35,7 @@ struct RenderOptions {
   PictureSize size;
   EffectOptions effects;  ///< on the finished picture
   int supersample = 1;    ///< what is drawn and filtered has so many times the width and height
+  int samples = 1;        ///< of a pixel
   double frame = 0.0;
   std::optional<ShadowKind> shadows;  ///< of all lights, in place of what the scene says
   MapOptions map;

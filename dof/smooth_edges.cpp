@@ -1,0 +1,139 @@
+#include "dof/smooth_edges.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <optional>
+
+#include "raster/numbers/half.h"
+#include "raster/threads/loops.h"
+
+namespace softfocus {
+namespace {
+
+glm::vec4 texel_of(std::span<const std::uint16_t> row, int x) {
+  const std::uint16_t* v = &row[4 * static_cast<std::size_t>(x)];
+  return {half_to_float(v[0]), half_to_float(v[1]), half_to_float(v[2]), half_to_float(v[3])};
+}
+
+// A pixel and its neighbours, the nearest first.
+struct Neighbour {
+  int dx, dy;
+};
+constexpr std::array<Neighbour, 9> kAround{{{0, 0},
+                                            {-1, 0},
+                                            {1, 0},
+                                            {0, -1},
+                                            {0, 1},
+                                            {-1, -1},
+                                            {1, -1},
+                                            {-1, 1},
+                                            {1, 1}}};
+// Where rings of equal distance end.
+constexpr std::array<std::size_t, 3> kRingEnds{1, 5, 9};
+
+/// Depths as 1 / z, in which circles of confusion are linear. A surface's pixels are on its side of
+/// the middle between the two.
+struct Side {
+  float surface;
+  float border;
+
+  bool has(float inverse_depth) const {
+    return surface > border ? inverse_depth > border : inverse_depth <= border;
+  }
+};
+
+// The neighbour that shows a surface: of the nearest ring that has one, that of the nearest depth.
+std::optional<Neighbour> find_shown(const EdgeRows& rows, int x, int width, const Side& side) {
+  std::size_t begin = 0;
+  for (const std::size_t end : kRingEnds) {
+    std::optional<Neighbour> found;
+    float least = 0.0f;
+    for (std::size_t i = begin; i < end; ++i) {
+      const int column = x + kAround[i].dx;
+      if (column < 0 || column >= width) continue;
+      const auto row = static_cast<std::size_t>(1 + kAround[i].dy);
+      const float inverse = 1.0f / texel_of(rows.scene[row], column).w;
+      if (!side.has(inverse)) continue;
+      const float away = std::fabs(inverse - side.surface);
+      if (found && !(away < least)) continue;
+      found = kAround[i];
+      least = away;
+    }
+    if (found) return found;
+    begin = end;
+  }
+  return {};
+}
+
+// How far a surface is in focus: 1 without a circle, 0 from a radius of a pixel on.
+float sharpness(const DofSettings& settings, float depth_m) {
+  const float radius =
+      std::min(std::fabs(coc_radius_px(settings.coc, depth_m)), settings.max_coc_px);
+  return radius < 1.0f ? 1.0f - radius : 0.0f;
+}
+
+glm::vec3 filtered_surface(const EdgeRows& rows, int x, int width, const glm::vec4& surface,
+                           const Side& side, const DofSettings& settings) {
+  const Neighbour at = find_shown(rows, x, width, side).value_or(Neighbour{0, 0});
+  const auto row = static_cast<std::size_t>(1 + at.dy);
+  const glm::vec3 filtered{texel_of(rows.filtered[row], x + at.dx)};
+  const glm::vec3 before{texel_of(rows.scene[row], x + at.dx)};
+  const float sharp = sharpness(settings, surface.w);
+  return filtered + (glm::vec3{surface} - before) * sharp;
+}
+
+}  // namespace
+
+void smooth_row(const EdgeRows& rows, const DofSettings& settings, HalfRounding rounding,
+                std::vector<SmoothPixel>& changed) {
+  const auto width = static_cast<int>(rows.coverage.size());
+  for (int x = 0; x < width; ++x) {
+    const std::uint8_t coverage = rows.coverage[static_cast<std::size_t>(x)];
+    if (coverage == 0) continue;
+    const glm::vec4 shown = texel_of(rows.shown, x), other = texel_of(rows.other, x);
+    const float of_shown = 1.0f / shown.w, of_other = 1.0f / other.w;
+    const float border = 0.5f * (of_shown + of_other);
+    const glm::vec3 a =
+        filtered_surface(rows, x, width, shown, {of_shown, border}, settings);
+    const glm::vec3 b =
+        filtered_surface(rows, x, width, other, {of_other, border}, settings);
+    const float part = static_cast<float>(coverage) / 255.0f;
+    const glm::vec3 colour = a + (b - a) * part;
+    const auto at = static_cast<std::size_t>(x);
+    changed.push_back({x,
+                       {float_to_half(colour.x, rounding), float_to_half(colour.y, rounding),
+                        float_to_half(colour.z, rounding), rows.filtered[1][4 * at + 3]}});
+  }
+}
+
+void smooth_edges(const DofInput& input, const ImageView& filtered, ThreadPool& pool) {
+  if (input.edges.coverage.texels == nullptr) return;
+  const int height = filtered.height;
+  std::vector<std::vector<SmoothPixel>> changed(static_cast<std::size_t>(height));
+  const ConstImageView before = filtered;
+  constexpr int kRows = 8;  // that a thread takes at a time
+  for_each_row(pool, height, kRows, [&](int y) {
+    EdgeRows rows;
+    for (int i = 0; i < 3; ++i) {
+      const int from = std::clamp(y + i - 1, 0, height - 1);
+      rows.scene[static_cast<std::size_t>(i)] = row<std::uint16_t>(input.scene, from);
+      rows.filtered[static_cast<std::size_t>(i)] = row<std::uint16_t>(before, from);
+    }
+    rows.shown = row<std::uint16_t>(input.edges.shown, y);
+    rows.other = row<std::uint16_t>(input.edges.other, y);
+    rows.coverage = row<std::uint8_t>(input.edges.coverage, y);
+    smooth_row(rows, input.settings, input.profile.half_store,
+               changed[static_cast<std::size_t>(y)]);
+  });
+  for_each_row(pool, height, kRows, [&](int y) {
+    const std::span<std::uint16_t> to = row<std::uint16_t>(filtered, y);
+    for (const SmoothPixel& pixel : changed[static_cast<std::size_t>(y)]) {
+      std::copy(pixel.texel.begin(), pixel.texel.end(),
+                to.begin() + 4 * static_cast<std::ptrdiff_t>(pixel.x));
+    }
+  });
+}
+
+}  // namespace softfocus

@@ -1,0 +1,45 @@
+#pragma once
+// Smooth edges in a filtered picture. A filter reads one surface a pixel, with that surface's depth:
+// a mean of two would lie between them, where nothing is. So it blurs first, and the edge becomes
+// smooth afterwards: a pixel that two surfaces share gets the filtered colour of both, each by its
+// part of the pixel. The filtered colour of a surface is that of the pixel itself, or of the nearest
+// neighbour that shows the surface; in focus, with the difference that the two had before the filter.
+// So whatever a method does to a surface, its edge has too: sharp against a blurred background, or
+// blurred.
+//
+// Known failures: what is thinner than a pixel, and shown by none, has its own colour as far as it is
+// in focus, and vanishes in the blur.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "dof/dof.h"
+
+namespace softfocus {
+
+/// Rows of an input and of its filtered picture. The first and the last of three are the row above
+/// and below; at the picture's border they are the row itself.
+struct EdgeRows {
+  std::array<std::span<const std::uint16_t>, 3> scene;
+  std::array<std::span<const std::uint16_t>, 3> filtered;
+  std::span<const std::uint16_t> shown, other;
+  std::span<const std::uint8_t> coverage;
+};
+
+/// A pixel of a row, RGBA16F.
+struct SmoothPixel {
+  int x;
+  std::array<std::uint16_t, 4> texel;
+};
+
+/// Appends the pixels that change, from left to right. Alpha stays the filtered picture's.
+void smooth_row(const EdgeRows& rows, const DofSettings& settings, HalfRounding rounding,
+                std::vector<SmoothPixel>& changed);
+
+/// Smooths the edges of `filtered`, made from `input`; without DofInput::edges it does nothing. A
+/// lens without circles, as of a picture that nothing blurs, has radius_at_infinity_px 0.
+void smooth_edges(const DofInput& input, const ImageView& filtered, ThreadPool& pool);
+
+}  // namespace softfocus
