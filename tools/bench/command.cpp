@@ -43,6 +43,7 @@ Shot shot_of(const OurFrame& frame) {
             .frame = work.frame,
             .width = work.size.width,
             .height = work.size.height,
+            .samples = work.samples,
             .method = work.method,
             .blends = false,
             .lens = ShotLens{.lens = {.focus_m = work.focus_m}},

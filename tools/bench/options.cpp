@@ -118,6 +118,7 @@ void add_subject_options(CLI::App& parser, BenchOptions& options) {
             "Instead of SCENE: a picture of that size that nothing draws, for the filter alone",
             [&options](const std::string& text) { options.image = parse_size("--image", text); });
   add_size(parser, options.size);
+  add_multisample(parser, options.samples);
   add_frame(parser, options.frame);
   add_value(parser, "--frames", "A..B[:STEP]",
             "Time these frames too, one after the other as a player shows them",
@@ -184,6 +185,12 @@ void complete(BenchOptions& options, const CLI::App& parser) {
     throw UsageError("--image and --size exclude each other: --image has the size");
   }
   if (options.image) options.size = *options.image;
+  if (options.samples > 1 && (options.image || options.versus != nullptr ||
+                              options.method.filter == nullptr || !options.effects.empty())) {
+    throw UsageError(
+        "--multisample needs a SCENE or --triangles N that is drawn and filtered, without --vs and "
+        "--effect");
+  }
   if (options.frames && (options.scene.empty() || options.all_effects || !options.effects.empty() ||
                          options.arithmetic != Arithmetic::floats)) {
     throw UsageError(

@@ -27,6 +27,7 @@ struct BenchOptions {
   std::optional<PictureSize> image;  ///< nothing is drawn: a picture of that size is filtered
   std::vector<std::filesystem::path> scene_path;
   PictureSize size;
+  int samples = 1;  ///< of a pixel
   double frame = 0.0;
   std::optional<FrameRange> frames;  ///< of a scene: timed one after the other as well
   MethodChoice method{.filter = find_method("two-pass")};

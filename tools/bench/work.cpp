@@ -63,6 +63,7 @@ Scene chosen_scene(const BenchOptions& options) {
 BenchWork make_work(const BenchOptions& options) {
   BenchWork work;
   work.size = options.size;
+  work.samples = options.samples;
   work.method = options.method;
   work.largest_radius_px = options.max_coc_px;
   work.sampling = options.sampling;

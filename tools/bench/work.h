@@ -20,6 +20,7 @@ struct BenchWork {
   CameraMatrices view{};
   double frame = 0.0;
   PictureSize size;
+  int samples = 1;  ///< of a pixel
   MethodChoice method;
   DofSettings settings;                    ///< of auto without max_coc_px
   std::optional<float> largest_radius_px;  ///< as given: what auto must keep to

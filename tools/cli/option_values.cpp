@@ -93,6 +93,18 @@ void add_size(CLI::App& parser, PictureSize& size) {
             [&size](const std::string& text) { size = parse_size("--size", text); });
 }
 
+void add_multisample(CLI::App& parser, int& samples) {
+  add_value(parser, "--multisample", "1|4|8",
+            "Samples of a pixel: several make edges smooth, each side at its own depth (default: " +
+                std::to_string(samples) + ")",
+            [&samples](const std::string& text) {
+              if (text != "1" && text != "4" && text != "8") {
+                throw UsageError("--multisample '" + text + "' is not 1, 4 or 8");
+              }
+              samples = text[0] - '0';
+            });
+}
+
 void add_frame(CLI::App& parser, double& frame) {
   using parameter::kFrame;
   add_value(parser, "--frame", std::string{kFrame.type},

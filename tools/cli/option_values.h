@@ -43,6 +43,9 @@ void add_scene_path(CLI::App& parser, std::vector<std::filesystem::path>& direct
 /// Adds --size.
 void add_size(CLI::App& parser, PictureSize& size);
 
+/// Adds --multisample; `samples` holds the default.
+void add_multisample(CLI::App& parser, int& samples);
+
 /// Adds --frame, a time of the animation.
 void add_frame(CLI::App& parser, double& frame);
 

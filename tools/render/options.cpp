@@ -54,15 +54,7 @@ void add_picture_options(CLI::App& parser, RenderOptions& options) {
       [&options](const std::string& text) {
         options.supersample = parse_whole("--supersample", text, 1, 2, "1 or 2");
       });
-  add_value(
-      parser, "--multisample", "1|4|8",
-      "Smooth edges, from so many samples of each pixel (default: 1)",
-      [&options](const std::string& text) {
-        options.samples = parse_whole("--multisample", text, 1, kMaxSamples, "1, 4 or 8");
-        if (options.samples != 1 && options.samples != 4 && options.samples != 8) {
-          throw UsageError("--multisample '" + text + "': 1, 4 or 8 would be right");
-        }
-      });
+  add_multisample(parser, options.samples);
   add_choice(parser, "--show",
              "The picture with depth of field, without, or a grey map (default: image)", kShows,
              options.show);
