@@ -90,7 +90,7 @@ class TileDrawing {
       softfocus::clear_behind(*memory_, *pass_.behind_before, *pass_.clear_depth);
       // Earlier triangles may have been shaded there: of these layers only what was dropped has
       // nothing to show.
-      if (is_cleared_) clear_unseen(pass_.isa, *memory_, *pass_.clear_colour, pass_.profile);
+      if (is_cleared_) clear_layers(memory_->layers);
     } else if (drops) {
       clear();
       clear_behind_in(pass_, area_, *pass_.clear_colour, *pass_.clear_depth);
@@ -168,20 +168,25 @@ class TileDrawing {
   void resolve_samples() {
     if (!has_begun_) begin_lanes();
     VisibilityTile& tile = *memory_;
-    find_mixed(pass_.isa, tile);
+    find_mixed(pass_.isa, tile, false);
+    join_surfaces(tile);
     list_further(tile);
-    clear_unseen(pass_.isa, tile, *pass_.clear_colour, pass_.profile);
+    clear_layers(1);
     shade_tile(tile);
     resolve_surfaces(pass_.isa, tile, *pass_.surfaces, *pass_.clear_colour, pass_.profile);
   }
 
+  void clear_layers(std::size_t layers) const {
+    clear_unseen(pass_.isa, *memory_, layers, *pass_.clear_colour, pass_.profile);
+  }
+
   void shade() {
     if (memory_->has_samples) {
-      find_mixed(pass_.isa, *memory_);
+      find_mixed(pass_.isa, *memory_, true);
       list_further(*memory_);
     }
     if (!is_cleared_ && pass_.clear_colour) {
-      clear_unseen(pass_.isa, *memory_, *pass_.clear_colour, pass_.profile);
+      clear_layers(memory_->layers);
     }
     is_cleared_ = true;
     shade_tile(*memory_);

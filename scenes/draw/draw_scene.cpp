@@ -494,8 +494,8 @@ void draw_surfaces(PreparedScene& prepared, const CameraMatrices& camera, double
   pass.targets.behind = {};
   pass.targets.samples = samples;
   pass.behind_before = {};
-  pass.surfaces = {&pictures.shown, &pictures.other, &pictures.coverage,
-                   of_size(prepared.depth, pictures.shown)};
+  Image* depth = prepared.has_transparent ? of_size(prepared.depth, pictures.shown) : nullptr;
+  pass.surfaces = {&pictures.shown, &pictures.other, &pictures.coverage, depth};
   const std::array layers{&pictures.shown, &pictures.other};
   draw_lit(prepared, camera, frame, layers, pool);
   pass.targets.samples = 1;

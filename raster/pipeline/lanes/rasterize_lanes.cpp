@@ -20,10 +20,11 @@ void rasterize_lanes(Isa isa, const LaneChunk& chunk, std::span<const Bin> bins,
   SOFTFOCUS_KERNEL(isa, rasterize)(chunk, bins, draw, profile, tile);
 }
 
-void clear_unseen(Isa isa, const VisibilityTile& tile, glm::vec4 value, const Profile& profile) {
+void clear_unseen(Isa isa, const VisibilityTile& tile, std::size_t layers, glm::vec4 value,
+                  const Profile& profile) {
   Image row = make_image(Format::rgba16f, kBlockSize, 1);
   clear_image(row, 0, 0, kBlockSize, 1, value, profile);
-  for (std::size_t i = 0; i < tile.layers; ++i) {
+  for (std::size_t i = 0; i < layers; ++i) {
     SOFTFOCUS_KERNEL(isa, set_unseen)(tile, tile.layer(i), row.bytes.data());
   }
 }
@@ -438,7 +439,10 @@ void rasterize(const LaneChunk& chunk, std::span<const Bin> bins, const DrawCall
       return rasterize_all<SampleWriter<false, true, by_profile> >(chunk, bins, draw, profile,
                                                                    tile);
     }
-    return rasterize_all<SampleWriter<true, false, by_profile> >(chunk, bins, draw, profile, tile);
+    if (profile.attributes == AttributeSetup::planes_from_origin) {
+      return rasterize_all<SampleWriter<true, false, planes> >(chunk, bins, draw, profile, tile);
+    }
+    return rasterize_all<SampleWriter<true, false, barycentric> >(chunk, bins, draw, profile, tile);
   }
   static_assert(kMaxLayers == 4);
   switch (tile.layers) {

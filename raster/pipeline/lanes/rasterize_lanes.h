@@ -20,7 +20,8 @@ namespace softfocus {
 void rasterize_lanes(Isa isa, const LaneChunk& chunk, std::span<const Bin> bins,
                      const DrawCall& draw, const Profile& profile, VisibilityTile& tile);
 
-/// Sets the pixels of a tile's layers that show nothing. Needs an isa with vectors.
-void clear_unseen(Isa isa, const VisibilityTile& tile, glm::vec4 value, const Profile& profile);
+/// Sets the pixels of a tile's first `layers` layers that show nothing. Needs an isa with vectors.
+void clear_unseen(Isa isa, const VisibilityTile& tile, std::size_t layers, glm::vec4 value,
+                  const Profile& profile);
 
 }  // namespace softfocus

@@ -14,7 +14,9 @@
 
 namespace softfocus {
 
-void find_mixed(Isa isa, VisibilityTile& tile) { SOFTFOCUS_KERNEL(isa, find_mixed_in)(tile); }
+void find_mixed(Isa isa, VisibilityTile& tile, bool marks_all) {
+  SOFTFOCUS_KERNEL(isa, find_mixed_in)(tile, marks_all);
+}
 
 void resolve_surfaces(Isa isa, VisibilityTile& tile, const SurfaceTargets& to, glm::vec4 clear,
                       const Profile& profile) {
@@ -45,7 +47,7 @@ void resolve_surfaces(Isa isa, VisibilityTile& tile, const SurfaceTargets& to, g
 
 #include "raster/pipeline/lanes/block_lanes.inl"
 
-void find_mixed_in(VisibilityTile& tile) {
+void find_mixed_in(VisibilityTile& tile, bool marks_all) {
   tile.mixed.clear();
   const int width = tile.area.x_end - tile.area.x_begin;
   const int height = tile.area.y_end - tile.area.y_begin;
@@ -58,6 +60,7 @@ void find_mixed_in(VisibilityTile& tile) {
       mixed |= ~(ids[s] == ids[0]);
     }
     if (!any(mixed)) {
+      if (!marks_all) continue;
       const Ints as_first = select(ids[0] > 0, splat(-1), Ints{});
       for (std::size_t s = 1; s < tile.layers; ++s) store(&tile.layer(s).ids[place], as_first);
       continue;

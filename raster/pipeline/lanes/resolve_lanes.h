@@ -11,8 +11,8 @@
 namespace softfocus {
 
 /// Finds the pixels whose samples do not all show the same, and marks samples that show what one
-/// before them does. Needs an isa with vectors.
-void find_mixed(Isa isa, VisibilityTile& tile);
+/// before them does: of those pixels, or of all. Needs an isa with vectors.
+void find_mixed(Isa isa, VisibilityTile& tile, bool marks_all);
 
 /// Of a tile that is shaded, whose first samples went to the picture: replaces mixed pixels by
 /// their surfaces, as find_surfaces(), and sets the coverage of all. `clear` is what samples

@@ -5,6 +5,8 @@
 #include <cstring>
 #include <utility>
 
+#include "raster/pipeline/multisample.h"
+
 namespace softfocus {
 namespace {
 
@@ -111,6 +113,48 @@ void end_tile(const VisibilityTile& tile, const RenderTargets& targets) {
                   depth_row(targets, i, area.y_begin + y).data() + area.x_begin + x);
     });
   }
+}
+
+namespace {
+
+bool share_corner(const LaneTriangle& a, const LaneTriangle& b) {
+  bool any = false;
+  for (const float* of_a : a.vertices) {
+    for (const float* of_b : b.vertices) any |= of_a == of_b;
+  }
+  return any && a.front_facing == b.front_facing;
+}
+
+}  // namespace
+
+void join_surfaces(VisibilityTile& tile) {
+  // Pixels that follow each other mostly show the same two.
+  std::int32_t known_a = 0, known_b = 0;
+  bool are_joined = false;
+  const auto joined = [&](std::int32_t a, std::int32_t b) {
+    if (a == known_a && b == known_b) return are_joined;
+    known_a = a;
+    known_b = b;
+    are_joined = share_corner(*tile.triangles[static_cast<std::size_t>(a - 1)],
+                              *tile.triangles[static_cast<std::size_t>(b - 1)]);
+    return are_joined;
+  };
+  std::size_t kept = 0;
+  for (const std::uint16_t place : tile.mixed) {
+    std::array<std::int32_t, kMaxSamples> ids{};
+    bool is_mixed = false;
+    for (std::size_t s = 0; s < tile.layers; ++s) {
+      std::int32_t& id = tile.layer(s).ids[place];
+      ids[s] = id;
+      if (s == 0) continue;
+      for (std::size_t r = 0; id > 0 && r < s; ++r) {
+        if (ids[r] > 0 && joined(ids[r], id)) id = -1 - static_cast<std::int32_t>(r);
+      }
+      is_mixed |= id > 0 || (id == 0) != (ids[0] == 0);
+    }
+    if (is_mixed) tile.mixed[kept++] = place;
+  }
+  tile.mixed.resize(kept);
 }
 
 void list_further(VisibilityTile& tile) {

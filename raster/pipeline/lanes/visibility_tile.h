@@ -103,6 +103,9 @@ void begin_tile(VisibilityTile& tile, const Rectangle& area, const RenderTargets
 /// Shades what the tile shows, the farthest layer first, draw by draw. Of several samples needs
 /// find_mixed() and list_further().
 void shade_tile(const VisibilityTile& tile);
+/// Of what find_mixed() found: samples whose triangles share a corner, and face the same way, show
+/// one surface, which goes on from triangle to triangle: it is shaded by the first of them.
+void join_surfaces(VisibilityTile& tile);
 /// Lists, for each run, what samples but the first show that no sample before them does.
 /// Needs find_mixed() (rasterize_lanes.h).
 void list_further(VisibilityTile& tile);
