@@ -66,6 +66,7 @@ struct TriangleDepths {
   const Profile& profile;
   Floats z0, z1, z2;
   Floats inverse_area;
+  bool needs_no_clamp = false;
 
   // Depths of a part of a block. Lane 0 is pixel (x, y).
   SOFTFOCUS_INLINE Floats at(int x, int y, Floats e1, Floats e2) const {
@@ -82,9 +83,11 @@ struct TriangleDepths {
   // At a sample, whose edge functions are given.
   SOFTFOCUS_INLINE Floats at_sample(int x, int y, Floats e1, Floats e2,
                                     const glm::ivec2& place) const {
-    if (form == DepthForm::barycentric ||
-        (form == DepthForm::by_profile &&
-         profile.attributes == AttributeSetup::exact_barycentric)) {
+    if (form == DepthForm::barycentric) {
+      const Floats depth = (z0 + (e1 * inverse_area) * z1) + (e2 * inverse_area) * z2;
+      return needs_no_clamp ? depth : clamped_depth(depth);
+    }
+    if (form == DepthForm::by_profile && profile.attributes == AttributeSetup::exact_barycentric) {
       return at(x, y, e1, e2);
     }
     const auto from_corner = [](int from_centre) {
@@ -160,8 +163,8 @@ struct SampleWriter {
     TileLayer& layer = tile.layer(sample);
     const Floats stored = load(&layer.depth[at]);
     Mask seen = covered & passes(kLess ? Compare::less : draw.depth.test, depth, stored);
-    if (!any(seen)) return;
     if (kDiscards && draw.lane_steps->keep != nullptr) {
+      if (!any(seen)) return;
       if (!knows_kept) keeps = kept(draw, triangle, x, y, ~Mask{});
       knows_kept = true;
       seen &= keeps;
@@ -287,7 +290,6 @@ SOFTFOCUS_INLINE void rasterize_small(const LaneTriangle& t, const VisibilityTil
             const auto& step = steps_of.of_sample[s];
             const Ints own1 = e1 + step[1], own2 = e2 + step[2];
             const Ints signs = (e0 + step[0]) | own1 | own2;
-            if (sign_bits(signs) == kAllLaneBits) continue;
             writer.write(x, y, place, signs >= 0, to_floats(own1 + threshold1),
                          to_floats(own2 + threshold2), s);
           }
@@ -401,6 +403,14 @@ void rasterize_huge(const LaneTriangle& t, const VisibilityTile& tile, Writer& w
   }
 }
 
+// Whether barycentric depths are from 0 to 1 wherever the triangle covers: its corners' are, by more
+// than is rounded.
+SOFTFOCUS_INLINE bool lies_between_planes(const LaneTriangle& t) {
+  const float a = t.depth[0], b = a + t.depth[1], c = a + t.depth[2];
+  constexpr float kMargin = 0x1p-16f;
+  return std::min(std::min(a, b), c) > kMargin && std::max(std::max(a, b), c) < 1.0f - kMargin;
+}
+
 template <class Writer>
 void rasterize_all(const LaneChunk& chunk, std::span<const Bin> bins, const DrawCall& draw,
                    const Profile& profile, VisibilityTile& tile) {
@@ -418,7 +428,8 @@ void rasterize_all(const LaneChunk& chunk, std::span<const Bin> bins, const Draw
         t,
         tile,
         static_cast<std::int32_t>(tile.triangles.size()),
-        {profile, splat(t.depth[0]), splat(t.depth[1]), splat(t.depth[2]), splat(t.inverse_area)}};
+        {profile, splat(t.depth[0]), splat(t.depth[1]), splat(t.depth[2]), splat(t.inverse_area),
+         lies_between_planes(t)}};
     if (!t.is_large) {
       rasterize_small(t, tile, writer);
     } else if (t.large->fits_doubles) {

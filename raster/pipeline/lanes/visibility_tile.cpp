@@ -118,26 +118,31 @@ void end_tile(const VisibilityTile& tile, const RenderTargets& targets) {
 namespace {
 
 bool share_corner(const LaneTriangle& a, const LaneTriangle& b) {
-  bool any = false;
-  for (const float* of_a : a.vertices) {
-    for (const float* of_b : b.vertices) any |= of_a == of_b;
-  }
-  return any && a.front_facing == b.front_facing;
+  const auto [a0, a1, a2] = a.vertices;
+  const auto [b0, b1, b2] = b.vertices;
+  // Without branches, which nothing would foretell.
+  const int same = int{a0 == b0} | int{a0 == b1} | int{a0 == b2} | int{a1 == b0} | int{a1 == b1} |
+                   int{a1 == b2} | int{a2 == b0} | int{a2 == b1} | int{a2 == b2};
+  return same != 0 && a.front_facing == b.front_facing;
 }
 
 }  // namespace
 
 void join_surfaces(VisibilityTile& tile) {
-  // Pixels that follow each other mostly show the same two.
-  std::int32_t known_a = 0, known_b = 0;
-  bool are_joined = false;
+  // Neighbouring pixels mostly show the same two.
+  struct Pair {
+    std::int32_t a = 0, b = 0;
+    bool is_joined = false;
+  };
+  std::array<Pair, 256> known{};
   const auto joined = [&](std::int32_t a, std::int32_t b) {
-    if (a == known_a && b == known_b) return are_joined;
-    known_a = a;
-    known_b = b;
-    are_joined = share_corner(*tile.triangles[static_cast<std::size_t>(a - 1)],
-                              *tile.triangles[static_cast<std::size_t>(b - 1)]);
-    return are_joined;
+    Pair& pair = known[static_cast<std::size_t>(a + 7 * b) % known.size()];
+    if (pair.a != a || pair.b != b) {
+      pair = {a, b,
+              share_corner(*tile.triangles[static_cast<std::size_t>(a - 1)],
+                           *tile.triangles[static_cast<std::size_t>(b - 1)])};
+    }
+    return pair.is_joined;
   };
   std::size_t kept = 0;
   for (const std::uint16_t place : tile.mixed) {

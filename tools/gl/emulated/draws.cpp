@@ -44,9 +44,11 @@ std::vector<VertexAttribute> given_attributes() {
   int location = 0;
   for (const EmulatedAttribute& of : emulated::gl().attributes) {
     if (of.is_enabled) {
+      // A draw without vertices may have a buffer without bytes.
+      const std::vector<std::byte>& buffer = emulated::gl().buffers[of.buffer];
       given.push_back({.location = location,
                        .components = of.components,
-                       .first = emulated::gl().buffers[of.buffer].data() + of.offset,
+                       .first = buffer.empty() ? nullptr : buffer.data() + of.offset,
                        .stride = of.stride});
     }
     ++location;
