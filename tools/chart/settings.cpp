@@ -65,7 +65,7 @@ const SettingsOfMethod& settings_of(std::string_view method) {
 }  // namespace
 
 bool is_of_effects(const ChartEntry& entry) {
-  return !entry.effects.empty() || entry.supersample > 1;
+  return !entry.effects.empty() || entry.supersample > 1 || entry.multisample > 1;
 }
 
 bool is_of_pinhole(const ChartEntry& entry) {

@@ -61,6 +61,7 @@ struct ChartEntry {
   std::string chosen{};                 ///< by auto, once it has: "disc-layers, radius 16"
   std::vector<ChosenEffect> effects{};  ///< on the pinhole's picture, one after the other
   int supersample = 1;                  ///< drawn at so many times the width and height
+  int multisample = 1;                  ///< samples of a pixel
   std::optional<ChartShadows> shadows{};
   std::optional<ChartTurn> turn{};
   EffectSetting setting{};  ///< in what effects, shadows or turns differ from others of the method

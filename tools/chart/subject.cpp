@@ -64,7 +64,8 @@ std::vector<ChartEntry> motion_entries(const std::string& method, int, bool quic
 
 // --- anti-aliasing ---
 
-/// The scene drawn twice as wide and high, and two blurs.
+/// Samples of a pixel, the scene drawn twice as wide and high, and two blurs.
+constexpr std::string_view kMultisample = "multisample";
 constexpr std::string_view kSupersample = "supersample";
 /// The average of so many frames from other places in the pixel.
 constexpr std::string_view kTemporal = "temporal-aa";
@@ -73,6 +74,7 @@ constexpr std::array<std::string_view, 2> kBlurs{"gaussian-3", "gaussian"};
 std::vector<std::string> smoothing_methods() {
   std::vector<std::string> names{std::string{kPinhole}};
   names.insert(names.end(), kBlurs.begin(), kBlurs.end());
+  names.emplace_back(kMultisample);
   names.emplace_back(kSupersample);
   names.emplace_back(kTemporal);
   names.emplace_back(kAccumulationName);
@@ -81,6 +83,15 @@ std::vector<std::string> smoothing_methods() {
 
 std::vector<ChartEntry> smoothing_entries(const std::string& method, int, bool quick) {
   if (method == kPinhole) return {plain_entry(method)};
+  if (method == kMultisample) {
+    std::vector<ChartEntry> entries;
+    for (const int samples : {4, 8}) {
+      entries.push_back({.method = method,
+                         .multisample = samples,
+                         .setting = {"samples", static_cast<double>(samples)}});
+    }
+    return entries;
+  }
   if (method == kSupersample) return {{.method = method, .supersample = 2}};
   if (method == kTemporal) {
     std::vector<ChartEntry> entries;

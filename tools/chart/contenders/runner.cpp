@@ -143,6 +143,16 @@ RunTime ChartRunner::draw_with_effects(const ChartEntry& entry) {
   if (!entry.effects.empty() && entry.effects.front().effect->filter == nullptr) {
     return draw_after_frames(entry.effects.front(), static_cast<int>(entry.setting.value));
   }
+  if (entry.multisample > 1) {
+    const Clock::time_point start = Clock::now();
+    draw_parts(*memory_for("ieee").prepared, scene_.view, scene_.frame, drawn_.width, drawn_.height,
+               1, smooth_, pool_, {}, entry.multisample);
+    const Clock::time_point drawn = Clock::now();
+    with_dof_input(smooth_, {}, Profile{}, {}, {}, [&](const DofInput& input) {
+      result_ = apply(*find_method(kPinhole), input, pool_);
+    });
+    return {ms_between(start, Clock::now()), ms_between(drawn, Clock::now())};
+  }
   const bool is_large = entry.supersample > 1;
   if (is_large && !prepared_large_) {
     prepared_large_ = prepare_scene(scene_.scene, Profile{}, pool_);
