@@ -147,11 +147,12 @@ class TileDrawing {
     }
   }
 
-  // The first sample's texels go to the picture, the others' to the tile's memory.
+  // Of the first sample the texels that are shaded at pixels' centres go to the picture, all others
+  // to the tile's memory.
   void keep_samples() {
     VisibilityTile& tile = *memory_;
     constexpr std::size_t kSampleBytes = kTilePixels * kTexelBytes;
-    const std::size_t bytes = (tile.layers - 1) * kSampleBytes;
+    const std::size_t bytes = tile.layers * kSampleBytes;
     if (tile.sample_texels_room < bytes) {
       tile.sample_texels.reset(new std::byte[bytes]);
       tile.sample_texels_room = bytes;
@@ -160,7 +161,7 @@ class TileDrawing {
     tile.front.texels = first_texel(picture, area_);
     tile.front.stride_bytes = picture.stride_bytes;
     for (std::size_t s = 1; s < tile.layers; ++s) {
-      tile.layer(s).texels = tile.sample_texels.get() + (s - 1) * kSampleBytes;
+      tile.layer(s).texels = tile.sample_texels.get() + s * kSampleBytes;
       tile.layer(s).stride_bytes = kTileSize * kTexelBytes;
     }
   }
@@ -169,8 +170,7 @@ class TileDrawing {
     if (!has_begun_) begin_lanes();
     VisibilityTile& tile = *memory_;
     find_mixed(pass_.isa, tile, false);
-    join_surfaces(tile);
-    list_further(tile);
+    list_surfaces(tile);
     clear_layers(1);
     shade_tile(tile);
     resolve_surfaces(pass_.isa, tile, *pass_.surfaces, *pass_.clear_colour, pass_.profile);

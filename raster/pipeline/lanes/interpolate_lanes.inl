@@ -102,7 +102,24 @@ struct BarycentricLanes {
     for (std::size_t i = 0; i < 3; ++i) {
       l[i] = to_floats(edge[i] + (multiply_add_pairs(steps, slopes[i]) << 8));
     }
-    if (any_large) weigh_large(pixels & 0xFFFF, pixels >> 16, l);
+    if (any_large) weigh_large(pixels & 0xFFFF, pixels >> 16, Ints{}, l);
+    return weights_of(l);
+  }
+
+  /// At places from the pixels' centres, packed_pixel() in 1/256 pixel.
+  SOFTFOCUS_INLINE Weights weights_at(Ints pixels, Ints shift) const {
+    std::array<Floats, 3> l;
+    const Ints steps = subtract_pairs(pixels, origin);
+#pragma GCC unroll 3
+    for (std::size_t i = 0; i < 3; ++i) {
+      l[i] = to_floats(edge[i] + (multiply_add_pairs(steps, slopes[i]) << 8) +
+                       multiply_add_pairs(shift, slopes[i]));
+    }
+    if (any_large) weigh_large(pixels & 0xFFFF, pixels >> 16, shift, l);
+    return weights_of(l);
+  }
+
+  SOFTFOCUS_INLINE Weights weights_of(std::array<Floats, 3> l) const {
 #pragma GCC unroll 3
     for (std::size_t i = 0; i < 3; ++i) l[i] *= inverse_area;
     const Floats p0 = l[0] * inverse_w[0];
@@ -138,23 +155,27 @@ struct BarycentricLanes {
     }
   }
 
-  SOFTFOCUS_INLINE void weigh_large(Ints x, Ints y, std::array<Floats, 3>& l) const {
-    const WideLanes dx = widen(x - (origin & 0xFFFF));
-    const WideLanes dy = widen(y - (origin >> 16));
+  SOFTFOCUS_INLINE void weigh_large(Ints x, Ints y, Ints shift, std::array<Floats, 3>& l) const {
+    // Edge functions are multiples of 256 along a pixel, so that products with 1/256 are exact.
+    const WideLanes part = wide_splat(1.0 / 256.0);
+    const WideLanes dx = widen(x - (origin & 0xFFFF)) + widen(shift << 16 >> 16) * part;
+    const WideLanes dy = widen(y - (origin >> 16)) + widen(shift >> 16) * part;
 #pragma GCC unroll 3
     for (std::size_t i = 0; i < 3; ++i) {
       l[i] = narrow(wide[i].at_origin + (dx * wide[i].per_x + dy * wide[i].per_y));
     }
-    if (any_huge) weigh_huge(x, y, l);
+    if (any_huge) weigh_huge(x, y, shift, l);
   }
 
-  void weigh_huge(const Ints& x, const Ints& y, std::array<Floats, 3>& l) const {
+  void weigh_huge(const Ints& x, const Ints& y, const Ints& shift,
+                  std::array<Floats, 3>& l) const {
     for (int lane = 0; lane < kLanes; ++lane) {
       const LaneTriangle& t = *(*of_quads)[static_cast<std::size_t>(lane / kQuadPixels)];
       if (t.large == nullptr) continue;
 #pragma GCC unroll 3
       for (std::size_t i = 0; i < 3; ++i) {
-        l[i][lane] = static_cast<float>(edge_at(t.large->exact.edges[i], x[lane], y[lane]));
+        const glm::ivec2 place{static_cast<std::int16_t>(shift[lane]), shift[lane] >> 16};
+        l[i][lane] = static_cast<float>(edge_at(t.large->exact.edges[i], x[lane], y[lane], place));
       }
     }
   }
@@ -262,6 +283,17 @@ struct PlaneLanes {
     const Floats column = to_floats(pixels & 0xFFFF) + centre;
     const Floats row = to_floats(pixels >> 16) + centre;
     return {column, row, 1.0f / at(inverse_w, column, row)};
+  }
+
+  /// As BarycentricLanes::weights_at(); w is the centre's, as llvmpipe has it.
+  SOFTFOCUS_INLINE PlanePoint weights_at(Ints pixels, Ints shift) const {
+    PlanePoint point = weights(pixels);
+    const auto from_corner = [&](Ints pixel, Ints along) {
+      return to_floats(pixel) + (centre + to_floats(along) * (1.0f / 256.0f));
+    };
+    point.x = from_corner(pixels & 0xFFFF, shift << 16 >> 16);
+    point.y = from_corner(pixels >> 16, shift >> 16);
+    return point;
   }
 
   SOFTFOCUS_INLINE Floats value(std::size_t varying, const PlanePoint& point) const {

@@ -134,6 +134,14 @@ surface_lanes(const std::array<std::array<Floats, 4>, kMaxSamples>& of, std::siz
 
 using Texels = std::array<std::uint64_t, kLanes>;
 
+// Of a sample's texels in the tile's memory.
+SOFTFOCUS_INLINE std::uint64_t texel_in(const std::byte* texels, const glm::ivec2& at) {
+  std::uint64_t texel = 0;
+  std::memcpy(&texel, texels + static_cast<std::size_t>(at.y * kTileSize + at.x) * sizeof texel,
+              sizeof texel);
+  return texel;
+}
+
 SOFTFOCUS_INLINE void to_texels(const std::array<Floats, 4>& colour, HalfRounding rounding,
                                 Texels& texels) {
   std::array<Bits, 4> halves;
@@ -169,7 +177,9 @@ void resolve_mixed(VisibilityTile& tile, const SurfaceTargets& to, std::uint64_t
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
         const std::uint16_t place = tile.mixed[begin + std::min(lane, count - 1)];
         const std::int32_t id = layer.ids[place];
-        if (id <= 0) {
+        if (s == 0 && id < 0) {
+          texels[s][lane] = texel_in(tile.sample_texels.get(), pixel_of_place(place));
+        } else if (id <= 0) {
           texels[s][lane] = id == 0 ? cleared : texels[static_cast<std::size_t>(-1 - id)][lane];
         } else {
           std::memcpy(&texels[s][lane], texel_at(layer, pixel_of_place(place)),

@@ -110,8 +110,8 @@ inline constexpr int kQuadsAhead = 3;
 struct SeenQuads {
   static constexpr std::size_t kRoom = kTilePixels + (kQuadsAhead + 1) * kLanes;
   std::array<std::uint32_t, kRoom> entries;
-  /// In bytes from the layer's texels, of samples but a pixel's first.
-  std::array<std::int32_t, kRoom> sample_offsets;
+  // Of FurtherQuad: where its sample's texels are, in bytes from sample 1's, and its shift.
+  std::array<std::int32_t, kRoom> sample_offsets, shifts;
   int count = 0;
 };
 
@@ -205,10 +205,14 @@ SOFTFOCUS_INLINE void fill_up(SeenQuads& seen) {
     const auto triangle = static_cast<std::uint32_t>(quad.id - run.first_id);
     seen.entries[i] =
         ((triangle << kQuadBits | row << kColumnBits | column) << kQuadPixels) + quad.pixels;
-    seen.sample_offsets[i] =
-        static_cast<std::int32_t>(tile.layer(quad.sample).texels - tile.layer(1).texels);
+    // Layer by layer, as the samples of an image and of a tile lie.
+    const std::ptrdiff_t layer_bytes = tile.layer(2).texels - tile.layer(1).texels;
+    seen.sample_offsets[i] = static_cast<std::int32_t>((quad.sample - 1) * layer_bytes);
+    seen.shifts[i] = quad.shift;
   }
-  std::fill_n(seen.sample_offsets.begin() + static_cast<std::ptrdiff_t>(count), kLanes, 0);
+  const auto end = static_cast<std::ptrdiff_t>(count);
+  std::fill_n(seen.sample_offsets.begin() + end, kLanes, 0);
+  std::fill_n(seen.shifts.begin() + end, kLanes, 0);
   seen.count = static_cast<int>(count);
   fill_up(seen);
   return count;
@@ -340,8 +344,13 @@ void shade_quads(const Stage& stage, const FragmentJob& job, const VisibilityTil
     constexpr int kToRows = 17 - kColumnBits - kQuadPixels;
     const Ints places = (entry >> (kQuadPixels - 1) & kInColumns) +
                         (entry << kToRows & kInColumns << 16) + own_place;
-    const QuadFragments<Interpolator> fragments{interpolator, interpolator.weights(places + origin),
-                                                of_quads};
+    QuadFragments<Interpolator> fragments{interpolator, interpolator.weights(places + origin),
+                                          of_quads};
+    if (is_further) {
+      // A quad is shifted as a whole, so that differences within it are as without.
+      const Ints shift = repeat_by_four(load(&seen.shifts[static_cast<std::size_t>(i)]));
+      if (any(~(shift == 0))) fragments.point = interpolator.weights_at(places + origin, shift);
+    }
     const std::int32_t* offsets = &batch.offsets[static_cast<std::size_t>(batch.count)];
     Ints pixel_offsets = multiply_add_pairs(places, per_place) * kTexelBytes;
     if (rows_are_long)

@@ -128,66 +128,10 @@ bool share_corner(const LaneTriangle& a, const LaneTriangle& b) {
 
 }  // namespace
 
-void join_surfaces(VisibilityTile& tile) {
-  // Neighbouring pixels mostly show the same two.
-  struct Pair {
-    std::int32_t a = 0, b = 0;
-    bool is_joined = false;
-  };
-  std::array<Pair, 256> known{};
-  const auto joined = [&](std::int32_t a, std::int32_t b) {
-    Pair& pair = known[static_cast<std::size_t>(a + 7 * b) % known.size()];
-    if (pair.a != a || pair.b != b) {
-      pair = {a, b,
-              share_corner(*tile.triangles[static_cast<std::size_t>(a - 1)],
-                           *tile.triangles[static_cast<std::size_t>(b - 1)])};
-    }
-    return pair.is_joined;
-  };
-  std::size_t kept = 0;
-  for (const std::uint16_t place : tile.mixed) {
-    std::array<std::int32_t, kMaxSamples> ids{};
-    bool is_mixed = false;
-    for (std::size_t s = 0; s < tile.layers; ++s) {
-      std::int32_t& id = tile.layer(s).ids[place];
-      ids[s] = id;
-      if (s == 0) continue;
-      for (std::size_t r = 0; id > 0 && r < s; ++r) {
-        if (ids[r] > 0 && joined(ids[r], id)) id = -1 - static_cast<std::int32_t>(r);
-      }
-      is_mixed |= id > 0 || (id == 0) != (ids[0] == 0);
-    }
-    if (is_mixed) tile.mixed[kept++] = place;
-  }
-  tile.mixed.resize(kept);
-}
+namespace {
 
-void list_further(VisibilityTile& tile) {
-  tile.further.clear();
-  std::vector<FurtherQuad> quads;
-  for (std::size_t i = 0; i < tile.mixed.size();) {
-    // The mixed pixels of a quad follow each other.
-    const unsigned number = tile.mixed[i] / unsigned{kQuadPixels};
-    unsigned pixels = 0;
-    for (; i < tile.mixed.size() && tile.mixed[i] / unsigned{kQuadPixels} == number; ++i) {
-      pixels |= 1u << tile.mixed[i] % unsigned{kQuadPixels};
-    }
-    for (std::size_t s = 1; s < tile.layers; ++s) {
-      const std::int32_t* ids = &tile.layer(s).ids[number * kQuadPixels];
-      for (unsigned rest = pixels; rest != 0;) {
-        const std::int32_t id = ids[std::countr_zero(rest)];
-        unsigned own = 0;
-        for (unsigned p = 0; p < kQuadPixels; ++p) {
-          if ((rest >> p & 1u) != 0 && ids[p] == id) own |= 1u << p;
-        }
-        rest &= ~own;
-        if (id <= 0) continue;
-        quads.push_back({id, static_cast<std::uint16_t>(number), static_cast<std::uint8_t>(own),
-                         static_cast<std::uint8_t>(s)});
-      }
-    }
-  }
-  // Sorted by run: a counting sort.
+// Sorts further quads by run: a counting sort.
+void sort_further(VisibilityTile& tile, const std::vector<FurtherQuad>& quads) {
   const auto run_of = [&](const FurtherQuad& quad) {
     return std::upper_bound(tile.runs.begin(), tile.runs.end(), quad.id,
                             [](std::int32_t id, const VisibleRun& run) { return id < run.end_id; });
@@ -201,6 +145,164 @@ void list_further(VisibilityTile& tile) {
   }
   tile.further.resize(quads.size());
   for (const FurtherQuad& quad : quads) tile.further[run_of(quad)->further_end++] = quad;
+}
+
+const LaneTriangle& triangle_of(const VisibilityTile& tile, std::int32_t id) {
+  return *tile.triangles[static_cast<std::size_t>(id - 1)];
+}
+
+bool covers_centre(const LaneTriangle& t, int x, int y) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::int64_t value = 0;
+    if (t.large != nullptr) {
+      value = edge_at(t.large->exact.edges[i], x, y);
+    } else {
+      value = t.edge[i] + std::int64_t{slope_x(t.slopes[i])} * (x - t.bounds[0]) +
+              std::int64_t{slope_y(t.slopes[i])} * (y - t.bounds[1]);
+    }
+    if (value < t.thresholds[i]) return false;
+  }
+  return true;
+}
+
+// Which triangles of a tile share a corner.
+class JoinedTriangles {
+ public:
+  explicit JoinedTriangles(const VisibilityTile& tile) : tile_(tile) {}
+
+  bool are_joined(std::int32_t a, std::int32_t b) {
+    if (a == b) return true;
+    // Neighbouring pixels mostly ask for the same two.
+    Pair& pair = known_[static_cast<std::size_t>(a + 7 * b) % known_.size()];
+    if (pair.a != a || pair.b != b) {
+      pair = {a, b, share_corner(triangle_of(tile_, a), triangle_of(tile_, b))};
+    }
+    return pair.is_joined;
+  }
+
+ private:
+  struct Pair {
+    std::int32_t a = 0, b = 0;
+    bool is_joined = false;
+  };
+  const VisibilityTile& tile_;
+  std::array<Pair, 256> known_{};
+};
+
+// Samples of a pixel, a bit each, that show one surface, and what shades it.
+struct PixelSurface {
+  unsigned samples = 0;
+  std::int32_t id = 0;
+  std::int32_t shift = 0;
+};
+
+PixelSurface shaded_surface(const VisibilityTile& tile, const glm::ivec2& at,
+                            std::span<const std::int32_t> ids, unsigned samples) {
+  PixelSurface surface{samples};
+  int most = 0;
+  glm::ivec2 sum{};
+  for (unsigned rest = samples; rest != 0;) {
+    const std::int32_t id = ids[static_cast<std::size_t>(std::countr_zero(rest))];
+    if (covers_centre(triangle_of(tile, id), tile.area.x_begin + at.x, tile.area.y_begin + at.y)) {
+      return {samples, id, 0};
+    }
+    int count = 0;
+    glm::ivec2 of_id{};
+    const std::span<const glm::ivec2> places = sample_places(static_cast<int>(ids.size()));
+    for (std::size_t s = 0; s < ids.size(); ++s) {
+      if ((rest >> s & 1u) == 0 || ids[s] != id) continue;
+      rest &= ~(1u << s);
+      of_id += places[s];
+      ++count;
+    }
+    if (count <= most) continue;
+    most = count;
+    sum = of_id;
+    surface.id = id;
+  }
+  surface.shift = packed_pixel(sum.x / most, sum.y / most);
+  return surface;
+}
+
+}  // namespace
+
+void list_surfaces(VisibilityTile& tile) {
+  JoinedTriangles joined{tile};
+  std::vector<FurtherQuad> quads;
+  std::size_t kept = 0;
+  std::array<std::int32_t, kMaxSamples> all{};
+  for (const std::uint16_t place : tile.mixed) {
+    for (std::size_t s = 0; s < tile.layers; ++s) {
+      const std::int32_t id = tile.layer(s).ids[place];
+      all[s] = id < 0 ? all[static_cast<std::size_t>(-1 - id)] : id;
+    }
+    const std::span ids = std::span{all}.first(tile.layers);
+    const glm::ivec2 at = pixel_of_place(place);
+    unsigned rest = (1u << tile.layers) - 1;
+    bool is_mixed = false;
+    while (rest != 0) {
+      const auto first = static_cast<std::size_t>(std::countr_zero(rest));
+      unsigned samples = 0;
+      for (std::size_t s = first; s < ids.size(); ++s) {
+        if ((rest >> s & 1u) == 0) continue;
+        const bool same = ids[s] == ids[first] ||
+                          (ids[s] > 0 && ids[first] > 0 && joined.are_joined(ids[first], ids[s]));
+        if (same) samples |= 1u << s;
+      }
+      rest &= ~samples;
+      is_mixed |= rest != 0 || first != 0;
+      const auto mark = [&](std::int32_t id) {
+        for (std::size_t s = first + 1; s < ids.size(); ++s) {
+          if ((samples >> s & 1u) != 0) tile.layer(s).ids[place] = id;
+        }
+      };
+      if (ids[first] == 0) {
+        mark(0);
+        continue;
+      }
+      const PixelSurface surface = shaded_surface(tile, at, ids, samples);
+      mark(-1 - static_cast<std::int32_t>(first));
+      if (first == 0 && surface.shift == 0) {
+        tile.front.ids[place] = surface.id;
+        continue;
+      }
+      is_mixed = true;
+      if (first == 0) tile.front.ids[place] = -1;
+      quads.push_back({surface.id, static_cast<std::uint16_t>(place / kQuadPixels),
+                       static_cast<std::uint8_t>(1u << place % kQuadPixels),
+                       static_cast<std::uint8_t>(first), surface.shift});
+    }
+    if (is_mixed) tile.mixed[kept++] = place;
+  }
+  tile.mixed.resize(kept);
+  sort_further(tile, quads);
+}
+
+void list_further(VisibilityTile& tile) {
+  std::vector<FurtherQuad> quads;
+  for (std::size_t i = 0; i < tile.mixed.size();) {
+    // The mixed pixels of a quad follow each other.
+    const unsigned number = tile.mixed[i] / unsigned{kQuadPixels};
+    unsigned pixels = 0;
+    for (; i < tile.mixed.size() && tile.mixed[i] / unsigned{kQuadPixels} == number; ++i) {
+      pixels |= 1u << tile.mixed[i] % unsigned{kQuadPixels};
+    }
+    for (std::size_t s = 1; s < tile.layers; ++s) {
+      const std::int32_t* ids = &tile.layer(s).ids[std::size_t{number} * kQuadPixels];
+      for (unsigned rest = pixels; rest != 0;) {
+        const std::int32_t id = ids[std::countr_zero(rest)];
+        unsigned own = 0;
+        for (unsigned p = 0; p < kQuadPixels; ++p) {
+          if ((rest >> p & 1u) != 0 && ids[p] == id) own |= 1u << p;
+        }
+        rest &= ~own;
+        if (id <= 0) continue;
+        quads.push_back({id, static_cast<std::uint16_t>(number), static_cast<std::uint8_t>(own),
+                         static_cast<std::uint8_t>(s), 0});
+      }
+    }
+  }
+  sort_further(tile, quads);
 }
 
 void copy_to_samples(const VisibilityTile& tile) {

@@ -51,12 +51,13 @@ struct VisibleRun {
   std::size_t further_end = 0;
 };
 
-/// Pixels of a quad that show a triangle at a sample, and not at one before it.
+/// Pixels of a quad that a triangle shades for a sample, beside those that `ids` of layer 0 tell.
 struct FurtherQuad {
   std::int32_t id;
   std::uint16_t number;  ///< place_of_pixel() over four
   std::uint8_t pixels;   ///< a bit each
-  std::uint8_t sample;   ///< from 1 on
+  std::uint8_t sample;
+  std::int32_t shift;  ///< packed_pixel() of where in the pixels, from their centres in 1/256 pixel
 };
 
 /// Depths, and the number of the triangle that each pixel shows, from 1 on. 0: none, so it is to
@@ -88,7 +89,8 @@ struct VisibilityTile {
   std::vector<VisibleRun> runs;
   std::vector<FurtherQuad> further;  ///< run by run
   std::vector<std::uint16_t> mixed;  ///< places of pixels whose samples do not all show the same
-  /// Texels of samples but the first, sample by sample in rows, if no image has them.
+  /// Texels of all samples, sample by sample in rows, if no image has them; of sample 0 those that
+  /// are further.
   std::unique_ptr<std::byte[]> sample_texels;
   std::size_t sample_texels_room = 0;
 
@@ -103,12 +105,18 @@ void begin_tile(VisibilityTile& tile, const Rectangle& area, const RenderTargets
 /// Shades what the tile shows, the farthest layer first, draw by draw. Of several samples needs
 /// find_mixed() and list_further().
 void shade_tile(const VisibilityTile& tile);
-/// Of what find_mixed() found: samples whose triangles share a corner, and face the same way, show
-/// one surface, which goes on from triangle to triangle: it is shaded by the first of them.
-void join_surfaces(VisibilityTile& tile);
-/// Lists, for each run, what samples but the first show that no sample before them does.
-/// Needs find_mixed() (rasterize_lanes.h).
+/// Lists, for each run, what samples but the first show that no sample before them does. Needs
+/// find_mixed() (rasterize_lanes.h).
 void list_further(VisibilityTile& tile);
+
+/// The same for pixels' surfaces (resolve_lanes.h). Samples of a pixel whose triangles share a corner,
+/// and face the same way, show one surface, which goes on from triangle to triangle. It is shaded
+/// once: by the triangle that covers the pixel's centre, or else by that which most of the samples
+/// show, the first of these, at the mean of their places. So nothing is extrapolated beyond a
+/// triangle, which of slivers leads far away. `mixed` are left the pixels of several surfaces, and
+/// those that are not shaded at their centre. Of these sample 0 is further too, if its surface is not
+/// shaded at the centre; then `ids` has -1.
+void list_surfaces(VisibilityTile& tile);
 /// Gives samples that show what another one does its texel.
 void copy_to_samples(const VisibilityTile& tile);
 /// Forgets the triangles and keeps the depths.
