@@ -17,6 +17,7 @@
 #include "raster/images/texel.h"
 #include "raster/numbers/fixed_point.h"
 #include "raster/pipeline/draw.h"
+#include "raster/pipeline/multisample.h"
 #include "tests/support/raster_helpers.h"
 #include "tests/support/sanitizers.h"
 
@@ -51,9 +52,6 @@ using Vertices = std::vector<VertexOutput<4>>;
 struct Drawn {
   Image colour;
   Image depth;
-  // If surfaces are wanted, with colour and depth.
-  Image other = {};
-  Image coverage = {};
 };
 
 struct Target {
@@ -68,21 +66,11 @@ LaneStages<test::ListedVertices<4>, MixedColour> stages_for(Isa isa) {
 }
 
 Drawn draw_mixed(Isa isa, const Target& target, const DrawState& state, const Vertices& vertices,
-                 const Profile& profile, int threads = 1, bool wants_surfaces = false) {
+                 const Profile& profile, int threads = 1) {
   const int rows = target.height * target.samples;
   Drawn drawn{make_image(Format::rgba16f, target.width, rows),
               make_image(Format::r32f, target.width, rows)};
-  Drawn surfaces;
   RenderPass pass;
-  if (wants_surfaces) {
-    surfaces = {make_image(Format::rgba16f, target.width, target.height),
-                make_image(Format::r32f, target.width, target.height),
-                make_image(Format::rgba16f, target.width, target.height),
-                make_image(Format::r8, target.width, target.height)};
-    // What is not written shows.
-    clear_image(surfaces.coverage, glm::vec4{1.0f}, profile);
-    pass.surfaces = {&surfaces.colour, &surfaces.other, &surfaces.coverage, &surfaces.depth};
-  }
   pass.targets.samples = target.samples;
   pass.targets.colour[0] = &drawn.colour;
   pass.targets.depth = &drawn.depth;
@@ -101,7 +89,7 @@ Drawn draw_mixed(Isa isa, const Target& target, const DrawState& state, const Ve
     draw_in_lanes(pass, state, indices, count, vertex_stage, MixedColour{}, stages_for(isa));
   }
   finish(pass, pool);
-  return wants_surfaces ? std::move(surfaces) : std::move(drawn);
+  return drawn;
 }
 
 // Triangles about points in the window, of edges up to `size` pixels.
@@ -140,21 +128,200 @@ void check_all_isas(Target target, const DrawState& state, const Vertices& verti
   }
 }
 
-// That tiles find the surfaces that images of all samples have.
-void check_surfaces(Target target, const Vertices& vertices, const Profile& profile) {
+// --- surfaces of pixels, one pixel after the other ---
+
+struct Surfaces {
+  Image picture, other, coverage, depth;
+};
+
+Surfaces no_surfaces(const Target& target) {
+  Surfaces surfaces{make_image(Format::rgba16f, target.width, target.height),
+                    make_image(Format::rgba16f, target.width, target.height),
+                    make_image(Format::r8, target.width, target.height),
+                    make_image(Format::r32f, target.width, target.height)};
+  clear_image(surfaces.coverage, glm::vec4{1.0f}, {});  // what is not written shows
+  return surfaces;
+}
+
+constexpr glm::vec4 kSurfacesClear{0.25f};
+constexpr float kSurfacesDepth = 0.75f;
+
+Surfaces draw_surfaces(Isa isa, const Target& target, const Vertices& vertices,
+                       std::span<const std::uint32_t> indices, const Profile& profile) {
+  Surfaces surfaces = no_surfaces(target);
+  Image colour = make_image(Format::rgba16f, target.width, target.height * target.samples);
+  Image depth = make_image(Format::r32f, target.width, target.height * target.samples);
+  RenderPass pass;
+  pass.profile = profile;
+  pass.targets.colour[0] = &colour;
+  pass.targets.depth = &depth;
+  pass.targets.samples = target.samples;
+  pass.surfaces = {&surfaces.picture, &surfaces.other, &surfaces.coverage, &surfaces.depth};
+  pass.isa = isa;
+  pass.clear_colour = kSurfacesClear;
+  pass.clear_depth = kSurfacesDepth;
+  DrawState state;
+  state.cull = Cull::none;
+  draw_in_lanes(pass, state, indices, static_cast<std::uint32_t>(vertices.size()),
+                test::ListedVertices<4>{&vertices}, MixedColour{}, stages_for(isa));
+  ThreadPool pool{2, isa};
+  finish(pass, pool);
+  return surfaces;
+}
+
+struct PlacedTriangle {
+  Triangle<4> triangle;
+  std::array<std::uint32_t, 3> corners;
+};
+
+// Of triangles that nothing clips.
+std::vector<PlacedTriangle> place_triangles(const Target& target, const Vertices& vertices,
+                                            std::span<const std::uint32_t> indices,
+                                            const Profile& profile) {
+  std::vector<PlacedTriangle> placed;
+  for (std::size_t i = 0; i < indices.size(); i += 3) {
+    std::array<WindowVertex, 3> window{};
+    std::array<Varyings<4>, 3> varyings{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const VertexOutput<4>& vertex = vertices[indices[i + k]];
+      window[k] = to_window(vertex.position, target.width, target.height, profile.viewport);
+      varyings[k] = vertex.varyings;
+    }
+    const auto setup =
+        set_up_triangle(window, Cull::none, FrontFace::counter_clockwise,
+                        {0, 0, target.width, target.height}, profile, target.samples);
+    if (!setup) continue;
+    placed.push_back({{*setup, varyings, 2}, {indices[i], indices[i + 1], indices[i + 2]}});
+  }
+  return placed;
+}
+
+bool covers(const PlacedTriangle& placed, int x, int y, const glm::ivec2& place) {
+  const auto& functions = std::get<EdgeFunctions>(placed.triangle.setup.coverage);
+  return std::all_of(functions.edges.begin(), functions.edges.end(), [&](const EdgeFunction& edge) {
+    return inside(edge, edge_at(edge, x, y, place));
+  });
+}
+
+bool share_surface(const PlacedTriangle& a, const PlacedTriangle& b) {
+  if (a.triangle.setup.front_facing != b.triangle.setup.front_facing) return false;
+  return std::any_of(a.corners.begin(), a.corners.end(), [&](std::uint32_t corner) {
+    return std::find(b.corners.begin(), b.corners.end(), corner) != b.corners.end();
+  });
+}
+
+template <class Interpolator>
+glm::vec4 shaded(const PlacedTriangle& placed, int x, int y, const glm::ivec2& place,
+                 const Profile& profile) {
+  const Interpolator interpolator{placed.triangle, profile, MixedColour::kInterpolation};
+  Fragment<4> fragment{.x = x, .y = y, .front_facing = placed.triangle.setup.front_facing};
+  fragment.varyings = interpolator.at(x, y, place).varyings;
+  // Differences of the quad, at the same places of its pixels.
+  const Varyings<4> corner = interpolator.at(x & ~1, y & ~1, place).varyings;
+  const Varyings<4> right = interpolator.at(x | 1, y & ~1, place).varyings;
+  const Varyings<4> below = interpolator.at(x & ~1, y | 1, place).varyings;
+  for (std::size_t i = 0; i < 4; ++i) {
+    fragment.ddx[i] = right[i] - corner[i];
+    fragment.ddy[i] = below[i] - corner[i];
+  }
+  Image texel = make_image(Format::rgba16f, 1, 1);
+  store_texel(texel, 0, 0, MixedColour{}(fragment).colour[0], profile);
+  return load_texel(texel, 0, 0);
+}
+
+template <class Interpolator>
+void store_pixel(Surfaces& to, const Target& target, std::span<const PlacedTriangle> triangles,
+                 int x, int y, const Profile& profile) {
+  const std::span<const glm::ivec2> places = sample_places(target.samples);
+  std::vector<const PlacedTriangle*> shows(places.size());
+  std::vector<float> depths(places.size(), kSurfacesDepth);
+  for (const PlacedTriangle& placed : triangles) {
+    const Interpolator interpolator{placed.triangle, profile, MixedColour::kInterpolation};
+    for (std::size_t s = 0; s < places.size(); ++s) {
+      if (!covers(placed, x, y, places[s])) continue;
+      const float depth = draw_detail::clamped_depth(
+          interpolator.depth(interpolator.pixel(x, y, places[s])), profile);
+      if (!(depth < depths[s])) continue;
+      depths[s] = depth;
+      shows[s] = &placed;
+    }
+  }
+  Image cleared = make_image(Format::rgba16f, 1, 1);
+  store_texel(cleared, 0, 0, kSurfacesClear, profile);
+  std::vector<glm::vec4> texels(places.size());
+  std::vector<bool> is_done(places.size());
+  for (std::size_t first = 0; first < places.size(); ++first) {
+    if (is_done[first]) continue;
+    std::vector<std::size_t> of_surface;
+    for (std::size_t s = first; s < places.size(); ++s) {
+      const bool same =
+          shows[s] == shows[first] || (shows[s] != nullptr && shows[first] != nullptr &&
+                                       share_surface(*shows[first], *shows[s]));
+      if (!is_done[s] && same) of_surface.push_back(s);
+    }
+    glm::vec4 texel = load_texel(cleared, 0, 0);
+    if (shows[first] != nullptr) {
+      const PlacedTriangle* by = nullptr;
+      glm::ivec2 place{};
+      int most = 0;
+      for (const std::size_t s : of_surface) {
+        int count = 0;
+        glm::ivec2 sum{};
+        for (const std::size_t other : of_surface) {
+          if (shows[other] != shows[s]) continue;
+          sum += places[other];
+          ++count;
+        }
+        if (covers(*shows[s], x, y, {})) {
+          by = shows[s];
+          place = {};
+          break;
+        }
+        if (count <= most) continue;
+        by = shows[s];
+        most = count;
+        place = sum / count;
+      }
+      texel = shaded<Interpolator>(*by, x, y, place, profile);
+    }
+    for (const std::size_t s : of_surface) {
+      texels[s] = texel;
+      is_done[s] = true;
+    }
+  }
+  const PixelSurfaces found = surfaces_of(texels);
+  store_texel(to.picture, x, y, found.texel, profile);
+  if (found.other_samples > 0) store_texel(to.other, x, y, found.other, profile);
+  const auto column = static_cast<std::size_t>(x);
+  row<std::uint8_t>(to.coverage, y)[column] = coverage_byte(found.other_samples, target.samples);
+  row<float>(to.depth, y)[column] = depths[static_cast<std::size_t>(found.first)];
+}
+
+void check_surfaces(Target target, const Vertices& vertices, std::span<const std::uint32_t> indices,
+                    const Profile& profile) {
   for (const int samples : {4, 8}) {
     target.samples = samples;
-    const Drawn expected = draw_mixed(Isa::scalar, target, {}, vertices, profile, 1, true);
-    int mixed = 0;
+    Surfaces expected = no_surfaces(target);
+    const auto triangles = place_triangles(target, vertices, indices, profile);
+    for (int y = 0; y < target.height; ++y) {
+      for (int x = 0; x < target.width; ++x) {
+        if (profile.attributes == AttributeSetup::exact_barycentric) {
+          store_pixel<BarycentricInterpolator<4>>(expected, target, triangles, x, y, profile);
+        } else {
+          using Interpolator = PlaneInterpolator<PlanesFromOrigin, 4>;
+          store_pixel<Interpolator>(expected, target, triangles, x, y, profile);
+        }
+      }
+    }
     for (const Isa isa : available_isas()) {
       if (isa == Isa::scalar) continue;
-      const Drawn drawn = draw_mixed(isa, target, {}, vertices, profile, 2, true);
+      const Surfaces drawn = draw_surfaces(isa, target, vertices, indices, profile);
       INFO("isa ", isa_name(isa));
       INFO("samples ", samples);
-      CHECK(equal(drawn.colour, expected.colour));
+      CHECK(equal(drawn.picture, expected.picture));
       CHECK(equal(drawn.depth, expected.depth));
       CHECK(equal(drawn.coverage, expected.coverage));
-      int different = 0;
+      int different = 0, mixed = 0;
       for (int y = 0; y < target.height; ++y) {
         for (int x = 0; x < target.width; ++x) {
           if (load_texel(expected.coverage, x, y).x == 0.0f) continue;
@@ -164,9 +331,43 @@ void check_surfaces(Target target, const Vertices& vertices, const Profile& prof
         }
       }
       CHECK(different == 0);
+      CHECK(mixed > 0);
     }
-    CHECK(mixed > 0);
   }
+}
+
+// Sheets of quads that share corners, bent and before each other.
+std::pair<Vertices, std::vector<std::uint32_t>> sheets(test::Random& random, const Target& target,
+                                                       int sheet_count, int cells) {
+  Vertices vertices;
+  std::vector<std::uint32_t> indices;
+  for (int sheet = 0; sheet < sheet_count; ++sheet) {
+    const auto first = static_cast<std::uint32_t>(vertices.size());
+    const double x = random.between(2.0, target.width * 0.6),
+                 y = random.between(2.0, target.height * 0.6);
+    const double cell = random.between(0.4, 5.0);
+    for (int j = 0; j <= cells; ++j) {
+      for (int i = 0; i <= cells; ++i) {
+        const glm::vec2 window{static_cast<float>(x + cell * (i + random.between(-0.6, 0.6))),
+                               static_cast<float>(y + cell * (j + random.between(-0.6, 0.6)))};
+        VertexOutput<4> vertex{
+            test::at_window(window, target.width, target.height, random.between(-0.9f, 0.9f)), {}};
+        vertex.position *= random.between(0.5f, 2.0f);
+        for (float& value : vertex.varyings) value = random.between(-2.0f, 2.0f);
+        vertices.push_back(vertex);
+      }
+    }
+    const auto across = static_cast<std::uint32_t>(cells + 1);
+    for (std::uint32_t j = 0; j + 1 < across; ++j) {
+      for (std::uint32_t i = 0; i + 1 < across; ++i) {
+        const std::uint32_t at = first + j * across + i;
+        for (const std::uint32_t corner : {0u, 1u, across, across, 1u, across + 1}) {
+          indices.push_back(at + corner);
+        }
+      }
+    }
+  }
+  return {vertices, indices};
 }
 
 constexpr std::array kProfileNames{"ieee", "d3d11", "llvmpipe", "llvmpipe-sse41"};
@@ -193,13 +394,14 @@ TEST_CASE("lanes: triangles of every size have the scalar form's bits") {
   }
 }
 
-TEST_CASE("lanes: a tile finds its pixels' surfaces as the samples' images have them") {
+TEST_CASE("lanes: the surfaces of pixels are those that are found pixel by pixel") {
+  const Target target{75, 70};  // four tiles
   for (const char* name : kProfileNames) {
     INFO("profile ", name);
     test::Random random{512};
-    for (const double size : {1.5, 6.0, 40.0}) {
-      check_surfaces(kTarget, random_triangles(random, kTarget, fewer(1500), size),
-                     profile_named(name));
+    for (const int cells : {1, 4, 12}) {
+      const auto [vertices, indices] = sheets(random, target, fewer(40) / cells + 1, cells);
+      check_surfaces(target, vertices, indices, profile_named(name));
     }
   }
 }
