@@ -82,12 +82,13 @@ void find_surfaces(const Image& colour, const Image& depth, int samples, const R
         of_pixel[s] = load_texel<Format::rgba16f>(colour, x, y * samples + static_cast<int>(s));
       }
       const PixelSurfaces surfaces = surfaces_of(std::span{of_pixel}.first(count));
-      store_texel(*to.picture, x, y, surfaces.texel, profile);
-      if (surfaces.other_samples > 0) store_texel(*to.other, x, y, surfaces.other, profile);
+      const int at = y - to.y_begin;
+      store_texel(*to.picture, x, at, surfaces.texel, profile);
+      if (surfaces.other_samples > 0) store_texel(*to.other, x, at, surfaces.other, profile);
       const auto column = static_cast<std::size_t>(x);
-      row<std::uint8_t>(*to.coverage, y)[column] = coverage_byte(surfaces.other_samples, samples);
+      row<std::uint8_t>(*to.coverage, at)[column] = coverage_byte(surfaces.other_samples, samples);
       if (to.depth == nullptr) continue;
-      row<float>(*to.depth, y)[column] = row<float>(depth, y * samples + surfaces.first)[column];
+      row<float>(*to.depth, at)[column] = row<float>(depth, y * samples + surfaces.first)[column];
     }
   }
 }

@@ -49,11 +49,13 @@ struct SurfaceTargets {
   Image* picture = nullptr;   ///< RGBA16F
   Image* other = nullptr;     ///< RGBA16F: the other surface; anything where it has no part
   Image* coverage = nullptr;  ///< r8: the other surface's part of the pixel
-  Image* depth = nullptr;     ///< r32f: window depths of `picture`, at its surface's first sample
+  /// r32f, or null: window depths of `picture`, at its surface's first sample.
+  Image* depth = nullptr;
+  int y_begin = 0;  ///< the row of the target that is the images' first
 };
 
 /// The surfaces of an area's pixels from multisampled images, of colour with depth in alpha and of
-/// window depths. Without to.depth none of these.
+/// window depths.
 void find_surfaces(const Image& colour, const Image& depth, int samples, const Rectangle& area,
                    const SurfaceTargets& to, const Profile& profile);
 

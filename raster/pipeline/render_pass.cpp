@@ -158,7 +158,9 @@ class TileDrawing {
       tile.sample_texels_room = bytes;
     }
     Image& picture = *pass_.surfaces->picture;
-    tile.front.texels = first_texel(picture, area_);
+    Rectangle area = area_;
+    area.y_begin -= pass_.surfaces->y_begin;
+    tile.front.texels = first_texel(picture, area);
     tile.front.stride_bytes = picture.stride_bytes;
     for (std::size_t s = 1; s < tile.layers; ++s) {
       tile.layer(s).texels = tile.sample_texels.get() + s * kSampleBytes;
@@ -220,20 +222,20 @@ bool is_in_lanes(std::span<const TileWork> work) {
                      [](const TileWork& item) { return item.draw->lane_steps != nullptr; });
 }
 
-// Whether a tile's triangles are shaded when all of them have passed.
-bool fits_once(std::span<const TileWork> work) {
+// Whether a tile's triangles are shaded when all of them have passed, so that it can keep samples.
+bool keeps_all_samples(std::span<const TileWork> work) {
   std::size_t triangles = 0;
   for (const TileWork& item : work) triangles += item.bins.size();
-  return triangles <= kMostVisible;
+  return is_in_lanes(work) && triangles <= kMostVisible;
 }
 
 void draw_tile(const RenderPass& pass, const TileLists& lists, int tile, TileMemory& memory,
                std::byte* texels) {
   assert(!has_layers(pass.targets) ||
          pass.clear_colour.has_value() == pass.clear_depth.has_value());
-  assert(!pass.surfaces || (pass.clear_colour && pass.clear_depth && pass.targets.samples > 1));
+  assert(!pass.surfaces || pass.targets.samples > 1);
   const std::span<const TileWork> work = work_of_tile(lists, tile);
-  const bool keeps_samples = pass.surfaces && is_in_lanes(work) && fits_once(work);
+  const bool keeps_samples = pass.surfaces && pass.clear_colour && keeps_all_samples(work);
   TileDrawing drawing{pass, tile_area(lists, tile), memory, texels, keeps_samples};
   for (std::size_t i = 0; i < work.size(); ++i) {
     // The next item was listed long ago, and has left the caches.
@@ -252,6 +254,13 @@ Rectangle target_area(const RenderTargets& targets) {
   }
   assert(first != nullptr);
   return {0, 0, first->width, first->height / targets.samples};
+}
+
+bool needs_targets(const TileLists& lists) {
+  for (int tile = 0; tile < tile_count(lists); ++tile) {
+    if (!keeps_all_samples(work_of_tile(lists, tile))) return true;
+  }
+  return false;
 }
 
 void draw_tile(const RenderPass& pass, const TileLists& lists, int tile, TileMemory& memory) {

@@ -202,15 +202,26 @@ glm::vec4 clear_colour(const Scene& scene) {
   return {scene.background, alpha_depth(static_cast<float>(scene.camera.far_m))};
 }
 
+namespace {
+
+void decode_textures(PreparedScene& prepared, ThreadPool& pool) {
+  const std::vector<Texture>& textures = prepared.scene->textures;
+  prepared.textures.resize(textures.size());
+  pool.for_each(static_cast<int>(textures.size()), [&](int i) {
+    const auto number = static_cast<std::size_t>(i);
+    DecodedTexture& texture = prepared.textures[number];
+    if (texture.source == nullptr) {
+      texture = decode_texture(textures[number], prepared.pass.profile);
+    }
+  });
+}
+
+}  // namespace
+
 PreparedScene prepare_scene(const Scene& scene, const Profile& profile, ThreadPool& pool) {
   PreparedScene prepared = prepare_surfaces(scene, profile, pool);
   if (has_shadows(scene)) prepared.shadows = make_scene_shadows(scene, profile, pool);
-  if (pool.isa() == Isa::scalar) return prepared;
-  pool.for_each(static_cast<int>(scene.textures.size()), [&](int i) {
-    const auto number = static_cast<std::size_t>(i);
-    DecodedTexture& texture = prepared.textures[number];
-    if (texture.source == nullptr) texture = decode_texture(scene.textures[number], profile);
-  });
+  if (pool.isa() != Isa::scalar) decode_textures(prepared, pool);
   return prepared;
 }
 
@@ -489,6 +500,13 @@ void draw_surfaces(PreparedScene& prepared, const CameraMatrices& camera, double
   make_sized(prepared.sampled_colour, width, height * samples);
   make_sized(prepared.sampled_depth, width, height * samples, Format::r32f);
   RenderPass& pass = prepared.pass;
+  // Drawing fragment by fragment knows no surfaces that go on from triangle to triangle: without a
+  // vector unit lanes are four wide.
+  const Isa isa = pass.isa;
+  if (isa == Isa::scalar) {
+    pass.isa = Isa::baseline;
+    decode_textures(prepared, pool);
+  }
   pass.targets.colour[0] = &prepared.sampled_colour;
   pass.targets.depth = &prepared.sampled_depth;
   pass.targets.behind = {};
@@ -500,6 +518,7 @@ void draw_surfaces(PreparedScene& prepared, const CameraMatrices& camera, double
   draw_lit(prepared, camera, frame, layers, pool);
   pass.targets.samples = 1;
   pass.surfaces.reset();
+  pass.isa = isa;
 }
 
 Image draw_scene(const Scene& scene, const CameraMatrices& camera, double frame, int width,

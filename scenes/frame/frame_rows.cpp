@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "dof/smooth_edges.h"
 #include "dof/two_pass/two_pass_stream.h"
 #include "raster/threads/loops.h"
 #include "scenes/draw/shadowed_layers.h"
@@ -36,7 +37,6 @@ std::string why_whole(const Shot& shot, Isa isa) {
   if (!is_two_pass(shot) && !is_sharp) return "only two-pass and pinhole work by rows";
   if (shot.arithmetic != Arithmetic::floats) return "--arithmetic has no other form";
   if (shot.supersample != 1) return "--supersample halves it";
-  if (shot.samples != 1) return "--multisample smooths edges across rows";
   if (!shot.effects.empty()) return "effects are of the whole picture";
   if (shot.layers.value_or(1) > 1) return "layers are drawn together";
   if (shot.lens && (shot.lens->focus_at || !shot.lens->sharp_depths.empty())) {
@@ -68,13 +68,26 @@ struct FrameRows::State {
   int next_tile_row = 0;
   std::deque<std::vector<std::uint16_t>> finished{};
 
+  // If edges are smooth.
+  Image other{}, coverage{};  ///< of `drawn`
+  /// Rows that wait for the filter, or for the row below to be filtered; the first has been
+  /// smoothed, but for the picture's.
+  struct EdgeRow {
+    std::vector<std::uint16_t> scene, other, filtered;
+    std::vector<std::uint8_t> coverage;
+  };
+  std::deque<EdgeRow> waiting{};
+  int first_waiting = 0;  ///< its row in the picture
+  int filtered_rows = 0, smoothed_rows = 0;
+  DofSettings edge_settings{};
+
   State(const Shot& of, ThreadPool& with, std::function<void(FrameStage)> told)
       : shot(of),
         pool(with),
         on_stage(std::move(told)),
         prepared(prepare_scene(*of.scene, of.profile, with)),
-        picture(without_texels(Format::rgba16f, of.width, of.height)),
-        depth(without_texels(Format::r32f, of.width, of.height)) {
+        picture(without_texels(Format::rgba16f, of.width, of.height * of.samples)),
+        depth(without_texels(Format::r32f, of.width, of.height * of.samples)) {
     DrawnFrame as_drawn{
         .view = camera_matrices(shot.scene->camera, shot.frame, shot.width, shot.height)};
     as_drawn.parts.opaque = without_texels(Format::rgba16f, shot.width, shot.height);
@@ -85,8 +98,14 @@ struct FrameRows::State {
     RenderPass& pass = prepared.pass;
     pass.targets.colour[0] = &picture;
     pass.targets.depth = &depth;
+    pass.targets.samples = shot.samples;
     record_scene(prepared, frame.view, shot.frame, pass);
     sort_into_tiles({&pass, 1}, {&tiles, 1}, pool);
+    if (shot.samples > 1 && needs_targets(tiles)) {
+      picture = make_image(picture.format, picture.width, picture.height);
+      depth = make_image(depth.format, depth.width, depth.height);
+    }
+    if (is_two_pass(shot)) edge_settings = frame.lens->settings;
     if (is_two_pass(shot)) {
       stream.emplace(shot.width, frame.lens->settings, shot.profile, pool.isa());
     }
@@ -105,6 +124,7 @@ struct FrameRows::State {
     const Rectangle corner = tile_area(tiles, first);
     const int rows = corner.y_end - corner.y_begin;
     if (drawn.height != rows) drawn = make_image(Format::rgba16f, shot.width, rows);
+    if (shot.samples > 1) return draw_edges(first, corner.y_begin);
     struct Scratch {
       TileMemory memory{};
       std::vector<std::byte> texels{};
@@ -121,15 +141,67 @@ struct FrameRows::State {
     });
   }
 
+  void draw_edges(int first, int y_begin) {
+    if (other.height != drawn.height) {
+      other = make_image(Format::rgba16f, shot.width, drawn.height);
+      coverage = make_image(Format::r8, shot.width, drawn.height);
+    }
+    prepared.pass.surfaces = {&drawn, &other, &coverage, nullptr, y_begin};
+    for_each_with<TileMemory>(pool, tiles.tiles_x, [&](int i, TileMemory& memory) {
+      draw_tile(prepared.pass, tiles, first + i, memory);
+    });
+    const auto copy = [](const auto& from) { return std::vector(from.begin(), from.end()); };
+    for (int y = 0; y < drawn.height; ++y) {
+      waiting.push_back({.scene = copy(row<std::uint16_t>(drawn, y)),
+                         .other = copy(row<std::uint16_t>(other, y)),
+                         .filtered = {},
+                         .coverage = copy(row<std::uint8_t>(coverage, y))});
+    }
+  }
+
+  EdgeRow& edge_row(int y) { return waiting[static_cast<std::size_t>(y - first_waiting)]; }
+
+  /// Takes the next row of the filtered picture. A row is smoothed once the one below it is there.
+  void keep(std::span<const std::uint16_t> of) {
+    if (shot.samples == 1) {
+      finished.emplace_back(of.begin(), of.end());
+      return;
+    }
+    edge_row(filtered_rows++).filtered.assign(of.begin(), of.end());
+    if (filtered_rows > 1) smooth_next();
+    if (filtered_rows == shot.height) smooth_next();
+  }
+
+  void smooth_next() {
+    const int y = smoothed_rows++;
+    EdgeRows rows;
+    for (int i = 0; i < 3; ++i) {
+      const EdgeRow& of = edge_row(std::clamp(y + i - 1, 0, shot.height - 1));
+      rows.scene[static_cast<std::size_t>(i)] = of.scene;
+      rows.filtered[static_cast<std::size_t>(i)] = of.filtered;
+    }
+    const EdgeRow& own = edge_row(y);
+    rows.shown = own.scene;
+    rows.other = own.other;
+    rows.coverage = own.coverage;
+    std::vector<SmoothPixel> changed;
+    smooth_row(rows, edge_settings, shot.profile.half_store, changed);
+    std::vector<std::uint16_t>& to = finished.emplace_back(own.filtered);
+    for (const SmoothPixel& pixel : changed) {
+      std::copy(pixel.texel.begin(), pixel.texel.end(), to.begin() + std::ptrdiff_t{4} * pixel.x);
+    }
+    if (y == 0) return;
+    waiting.pop_front();
+    ++first_waiting;
+  }
+
   /// Draws a band, or ends the picture.
   void go_on(const FrameBandSink& on_drawn) {
-    const RowSink keep = [&](std::span<const std::uint16_t> of) {
-      finished.emplace_back(of.begin(), of.end());
-    };
+    const RowSink sink = [&](std::span<const std::uint16_t> of) { keep(of); };
     if (is_drawn()) {
       assert(stream);
       tell(FrameStage::filtering);
-      return end_rows(*stream, pool, keep);
+      return end_rows(*stream, pool, sink);
     }
     tell(FrameStage::drawing);
     draw_band();
@@ -137,7 +209,7 @@ struct FrameRows::State {
     if (stream) tell(FrameStage::filtering);
     for (int y = 0; y < drawn.height; ++y) {
       const std::span<const std::uint16_t> next = row<std::uint16_t>(std::as_const(drawn), y);
-      stream ? put_row(*stream, next, pool, keep) : keep(next);
+      stream ? put_row(*stream, next, pool, sink) : keep(next);
     }
   }
 };

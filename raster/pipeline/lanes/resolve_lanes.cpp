@@ -20,7 +20,9 @@ void find_mixed(Isa isa, VisibilityTile& tile, bool marks_all) {
 
 void resolve_surfaces(Isa isa, VisibilityTile& tile, const SurfaceTargets& to, glm::vec4 clear,
                       const Profile& profile) {
-  const Rectangle& area = tile.area;
+  Rectangle area = tile.area;  // of the images
+  area.y_begin -= to.y_begin;
+  area.y_end -= to.y_begin;
   for (int y = area.y_begin; y < area.y_end; ++y) {
     std::memset(row<std::uint8_t>(*to.coverage, y).data() + area.x_begin, 0,
                 static_cast<std::size_t>(area.x_end - area.x_begin));
@@ -206,7 +208,7 @@ void resolve_mixed(VisibilityTile& tile, const SurfaceTargets& to, std::uint64_t
       }
       if (other_samples[lane] == 0) continue;
       const auto x = static_cast<std::size_t>(area.x_begin + at.x);
-      const int y = area.y_begin + at.y;
+      const int y = area.y_begin + at.y - to.y_begin;
       std::memcpy(&row<std::uint16_t>(*to.other, y)[4 * x], &other[lane], sizeof other[lane]);
       row<std::uint8_t>(*to.coverage, y)[x] =
           coverage_byte(other_samples[lane], static_cast<int>(tile.layers));
