@@ -39,10 +39,9 @@ struct TransparentLayer {
   ConstImageView opacity;
 };
 
-/// Pixels that two surfaces share, as an edge's are: pictures of the scene's size.
+/// Pixels that another surface shares with the scene's, as an edge's are: pictures of its size.
 struct EdgeSurfaces {
   ConstImageView coverage = {};  ///< r8: the part of a pixel that `other` has; without texels: none
-  ConstImageView shown = {};     ///< RGBA16F: the surface with the rest. It may be the scene
   ConstImageView other = {};     ///< RGBA16F: the other surface; anything where it has no part
 };
 
@@ -99,8 +98,8 @@ struct DofInput {
   /// itself, so that each surface has its own circle, and lays them over each other
   /// (transparent.h).
   std::span<const TransparentLayer> transparent = {};
-  /// Of `scene`, which shows one surface in each pixel; without a coverage none. apply() smooths the
-  /// edges of what the method makes of it (smooth_edges.h).
+  /// Of `scene`, which shows one surface in each pixel; without a coverage none. apply() smooths
+  /// the edges of what the method makes of it (smooth_edges.h).
   EdgeSurfaces edges = {};
   /// Signed radii in pixels, row by row from the top, in place of those that the lens gives, or
   /// empty. Only methods that take_radii read them.

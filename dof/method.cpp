@@ -154,10 +154,10 @@ const char* input_error(const DofInput& input, const ConstImageView& result) {
   const EdgeSurfaces& edges = input.edges;
   if (edges.coverage.texels != nullptr) {
     if (edges.coverage.format != Format::r8 || edges.coverage.width != scene.width ||
-        edges.coverage.height != scene.height || std::abs(edges.coverage.stride_bytes) < scene.width) {
+        edges.coverage.height != scene.height ||
+        std::abs(edges.coverage.stride_bytes) < scene.width) {
       return "the edges' coverage is not r8 of the scene's size";
     }
-    if (const char* error = layer_error(edges.shown)) return error;
     if (const char* error = layer_error(edges.other)) return error;
     if (!input.radii_px.empty()) return "radii are of one surface a pixel, and edges have two";
   }

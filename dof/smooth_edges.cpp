@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "raster/numbers/half.h"
+#include "raster/pipeline/multisample.h"
 #include "raster/threads/loops.h"
 
 namespace softfocus {
@@ -21,15 +22,8 @@ glm::vec4 texel_of(std::span<const std::uint16_t> row, int x) {
 struct Neighbour {
   int dx, dy;
 };
-constexpr std::array<Neighbour, 9> kAround{{{0, 0},
-                                            {-1, 0},
-                                            {1, 0},
-                                            {0, -1},
-                                            {0, 1},
-                                            {-1, -1},
-                                            {1, -1},
-                                            {-1, 1},
-                                            {1, 1}}};
+constexpr std::array<Neighbour, 9> kAround{
+    {{0, 0}, {-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}}};
 // Where rings of equal distance end.
 constexpr std::array<std::size_t, 3> kRingEnds{1, 5, 9};
 
@@ -38,8 +32,10 @@ constexpr std::array<std::size_t, 3> kRingEnds{1, 5, 9};
 struct Side {
   float surface;
   float border;
+  bool is_both = false;  ///< surfaces of one depth have no sides
 
   bool has(float inverse_depth) const {
+    if (is_both) return true;
     return surface > border ? inverse_depth > border : inverse_depth <= border;
   }
 };
@@ -74,14 +70,26 @@ float sharpness(const DofSettings& settings, float depth_m) {
   return radius < 1.0f ? 1.0f - radius : 0.0f;
 }
 
+// How far the filter left a pixel as it was: 1 if it did, 0 from a difference of a tenth on.
+float kept(const glm::vec3& before, const glm::vec3& filtered) {
+  float most = 0.0f, largest = 0.0f;
+  for (int i = 0; i < 3; ++i) {
+    most = std::max(most, std::fabs(filtered[i] - before[i]));
+    largest = std::max(largest, std::max(std::fabs(before[i]), std::fabs(filtered[i])));
+  }
+  const float tenth = 0.1f * largest;
+  return most < tenth ? 1.0f - most / tenth : largest == 0.0f ? 1.0f : 0.0f;
+}
+
 glm::vec3 filtered_surface(const EdgeRows& rows, int x, int width, const glm::vec4& surface,
                            const Side& side, const DofSettings& settings) {
   const Neighbour at = find_shown(rows, x, width, side).value_or(Neighbour{0, 0});
   const auto row = static_cast<std::size_t>(1 + at.dy);
   const glm::vec3 filtered{texel_of(rows.filtered[row], x + at.dx)};
   const glm::vec3 before{texel_of(rows.scene[row], x + at.dx)};
-  const float sharp = sharpness(settings, surface.w);
-  return filtered + (glm::vec3{surface} - before) * sharp;
+  // Not where something else is blurred over it, of which the filter alone knows how much.
+  const float own = sharpness(settings, surface.w) * kept(before, filtered);
+  return filtered + (glm::vec3{surface} - before) * own;
 }
 
 }  // namespace
@@ -92,13 +100,14 @@ void smooth_row(const EdgeRows& rows, const DofSettings& settings, HalfRounding 
   for (int x = 0; x < width; ++x) {
     const std::uint8_t coverage = rows.coverage[static_cast<std::size_t>(x)];
     if (coverage == 0) continue;
-    const glm::vec4 shown = texel_of(rows.shown, x), other = texel_of(rows.other, x);
+    const glm::vec4 shown = texel_of(rows.scene[1], x), other = texel_of(rows.other, x);
     const float of_shown = 1.0f / shown.w, of_other = 1.0f / other.w;
     const float border = 0.5f * (of_shown + of_other);
+    const bool is_one = is_one_surface(shown.w, other.w);
     const glm::vec3 a =
-        filtered_surface(rows, x, width, shown, {of_shown, border}, settings);
+        filtered_surface(rows, x, width, shown, {of_shown, border, is_one}, settings);
     const glm::vec3 b =
-        filtered_surface(rows, x, width, other, {of_other, border}, settings);
+        filtered_surface(rows, x, width, other, {of_other, border, is_one}, settings);
     const float part = static_cast<float>(coverage) / 255.0f;
     const glm::vec3 colour = a + (b - a) * part;
     const auto at = static_cast<std::size_t>(x);
@@ -121,7 +130,6 @@ void smooth_edges(const DofInput& input, const ImageView& filtered, ThreadPool& 
       rows.scene[static_cast<std::size_t>(i)] = row<std::uint16_t>(input.scene, from);
       rows.filtered[static_cast<std::size_t>(i)] = row<std::uint16_t>(before, from);
     }
-    rows.shown = row<std::uint16_t>(input.edges.shown, y);
     rows.other = row<std::uint16_t>(input.edges.other, y);
     rows.coverage = row<std::uint8_t>(input.edges.coverage, y);
     smooth_row(rows, input.settings, input.profile.half_store,

@@ -1,14 +1,14 @@
 #pragma once
-// Smooth edges in a filtered picture. A filter reads one surface a pixel, with that surface's depth:
-// a mean of two would lie between them, where nothing is. So it blurs first, and the edge becomes
-// smooth afterwards: a pixel that two surfaces share gets the filtered colour of both, each by its
-// part of the pixel. The filtered colour of a surface is that of the pixel itself, or of the nearest
-// neighbour that shows the surface; in focus, with the difference that the two had before the filter.
-// So whatever a method does to a surface, its edge has too: sharp against a blurred background, or
-// blurred.
+// Smooth edges in a filtered picture. A filter reads one surface a pixel, with that surface's
+// depth: a mean of two would lie between them, where nothing is. So it blurs first, and the edge
+// becomes smooth afterwards: a pixel that two surfaces share gets the filtered colour of both, each
+// by its part of the pixel. The filtered colour of a surface is that of the pixel itself, or of the
+// nearest neighbour that shows the surface; in focus, with the difference that the two had before
+// the filter. So whatever a method does to a surface, its edge has too: sharp against a blurred
+// background, or blurred.
 //
-// Known failures: what is thinner than a pixel, and shown by none, has its own colour as far as it is
-// in focus, and vanishes in the blur.
+// Known failures: what is thinner than a pixel, and shown by none, has its own colour as far as it
+// is in focus, and vanishes in the blur.
 
 #include <array>
 #include <cstdint>
@@ -24,7 +24,7 @@ namespace softfocus {
 struct EdgeRows {
   std::array<std::span<const std::uint16_t>, 3> scene;
   std::array<std::span<const std::uint16_t>, 3> filtered;
-  std::span<const std::uint16_t> shown, other;
+  std::span<const std::uint16_t> other;
   std::span<const std::uint8_t> coverage;
 };
 

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
+#include <glm/vec3.hpp>
 
 #include "raster/images/texel.h"
+#include "raster/threads/loops.h"
 
 namespace softfocus {
 namespace {
@@ -15,19 +18,6 @@ constexpr std::array<glm::ivec2, 1> kOne{at(0, 0)};
 constexpr std::array<glm::ivec2, 4> kFour{at(-2, -6), at(6, -2), at(-6, 2), at(2, 6)};
 constexpr std::array<glm::ivec2, 8> kEight{at(1, -3), at(-1, 3),  at(5, 1), at(-3, -5),
                                            at(-5, 5), at(-7, -1), at(3, 7), at(7, -7)};
-
-struct Group {
-  glm::vec4 sum{-0.0f};  // so that zeros keep their sign
-  int count = 0;
-  int first = 0;
-
-  void add(const glm::vec4& sample, int number) {
-    if (count == 0) first = number;
-    sum += sample;
-    ++count;
-  }
-  glm::vec4 mean() const { return sum * (1.0f / static_cast<float>(count)); }
-};
 
 }  // namespace
 
@@ -52,45 +42,55 @@ Image resolve(const Image& multisampled, int samples, const Profile& profile) {
   return image;
 }
 
-PixelSurfaces surfaces_of(std::span<const glm::vec4> samples) {
-  float nearest = samples[0].w, farthest = samples[0].w;
+OtherSurface other_surface(float centre_depth, std::span<const glm::vec4> samples) {
+  const float centre = 1.0f / centre_depth;
+  float farthest = centre;
+  bool is_one = true;
   for (const glm::vec4& sample : samples) {
-    nearest = std::min(nearest, sample.w);
-    farthest = std::max(farthest, sample.w);
+    const float inverse = 1.0f / sample.w;
+    if (std::fabs(inverse - centre) > std::fabs(farthest - centre)) farthest = inverse;
+    is_one = is_one && is_one_surface(sample.w, centre_depth);
   }
-  const bool is_one = farthest <= nearest * kOneSurface;
-  const float border = 2.0f / (1.0f / nearest + 1.0f / farthest);
-  Group near_group, far_group;
-  for (std::size_t s = 0; s < samples.size(); ++s) {
-    (is_one || samples[s].w < border ? near_group : far_group).add(samples[s], static_cast<int>(s));
+  const float border = 0.5f * (centre + farthest);
+  const auto is_other = [&](const glm::vec4& sample) {
+    const float inverse = 1.0f / sample.w;
+    return is_one || (farthest > centre ? inverse > border : inverse <= border);
+  };
+  glm::vec3 sum{0.0f};
+  float depth = 0.0f;
+  int count = 0, most = 0;
+  for (const glm::vec4& sample : samples) {
+    if (!is_other(sample)) continue;
+    sum += glm::vec3{sample};
+    ++count;
+    const auto alike =
+        static_cast<int>(std::count_if(samples.begin(), samples.end(), [&](const glm::vec4& one) {
+          return is_other(one) && one.w == sample.w;
+        }));
+    if (alike > most) depth = sample.w;
+    most = std::max(most, alike);
   }
-  if (far_group.count == 0) return {near_group.mean(), {}};
-  if (near_group.count == 0) return {far_group.mean(), {}};
-  const bool shows_near = near_group.count >= far_group.count;
-  const Group& shown = shows_near ? near_group : far_group;
-  const Group& other = shows_near ? far_group : near_group;
-  return {shown.mean(), other.mean(), other.count, shown.first};
+  return {{sum * (1.0f / static_cast<float>(count)), depth}, count};
 }
 
-void find_surfaces(const Image& colour, const Image& depth, int samples, const Rectangle& area,
-                   const SurfaceTargets& to, const Profile& profile) {
-  std::array<glm::vec4, kMaxSamples> of_pixel;
-  const auto count = static_cast<std::size_t>(samples);
-  for (int y = area.y_begin; y < area.y_end; ++y) {
-    for (int x = area.x_begin; x < area.x_end; ++x) {
-      for (std::size_t s = 0; s < count; ++s) {
-        of_pixel[s] = load_texel<Format::rgba16f>(colour, x, y * samples + static_cast<int>(s));
+void find_edges(const Image& picture, const Image& multisampled, const EdgeTargets& to,
+                const Profile& profile, ThreadPool& pool) {
+  constexpr int kRows = 8;  // that a thread takes at a time
+  for_each_row(pool, picture.height, kRows, [&](int y) {
+    for (int x = 0; x < picture.width; ++x) {
+      const float centre = load_texel<Format::rgba16f>(picture, x, y).w;
+      std::array<glm::vec4, kMaxSamples> others;
+      std::size_t count = 0;
+      for (int s = 0; s < to.samples; ++s) {
+        const glm::vec4 sample = load_texel<Format::rgba16f>(multisampled, x, y * to.samples + s);
+        if (!is_one_surface(sample.w, centre)) others[count++] = sample;
       }
-      const PixelSurfaces surfaces = surfaces_of(std::span{of_pixel}.first(count));
-      const int at = y - to.y_begin;
-      store_texel(*to.picture, x, at, surfaces.texel, profile);
-      if (surfaces.other_samples > 0) store_texel(*to.other, x, at, surfaces.other, profile);
-      const auto column = static_cast<std::size_t>(x);
-      row<std::uint8_t>(*to.coverage, at)[column] = coverage_byte(surfaces.other_samples, samples);
-      if (to.depth == nullptr) continue;
-      row<float>(*to.depth, at)[column] = row<float>(depth, y * samples + surfaces.first)[column];
+      const OtherSurface other = other_surface(centre, std::span{others}.first(count));
+      row<std::uint8_t>(*to.coverage, y)[static_cast<std::size_t>(x)] =
+          coverage_byte(other.samples, to.samples);
+      if (other.samples > 0) store_texel(*to.other, x, y, other.texel, profile);
     }
-  }
+  });
 }
 
 }  // namespace softfocus

@@ -11,6 +11,7 @@
 #include "raster/images/image.h"
 #include "raster/numbers/profile.h"
 #include "raster/pipeline/state.h"
+#include "raster/threads/parallel.h"
 
 namespace softfocus {
 
@@ -27,37 +28,41 @@ int sample_reach(int samples);
 /// RGBA16F or r32f image. llvmpipe takes it of colours; of depths it takes sample 0.
 Image resolve(const Image& multisampled, int samples, const Profile& profile);
 
-/// A pixel's samples as two surfaces, for filters that blur each at its own depth. `texel` has the
-/// larger part of the pixel, the nearer surface if both have as much.
-struct PixelSurfaces {
-  glm::vec4 texel;  ///< linear colour, and in alpha the depth in metres
-  glm::vec4 other;  ///< of the other surface; anything if that has no part
-  int other_samples = 0;
-  int first = 0;  ///< the first sample of `texel`'s surface
+// Edges: pixels that another surface shares with the one at their centre, for filters that blur
+// each at its own depth. The picture itself is one sample a pixel.
+
+/// Where a pass leaves the edges of its first colour: images of the target's pixels.
+struct EdgeTargets {
+  int samples = 0;  ///< 4 or 8, besides the pixel's centre
+  /// RGBA16F: other_surface() of the samples that do not show the centre's, or anything.
+  Image* other = nullptr;
+  Image* coverage = nullptr;  ///< r8: the part of a pixel that `other` has
+  int y_begin = 0;            ///< the row of the target that is the images' first
 };
 
-/// A pixel whose farthest depth is at most this many times the nearest shows one surface.
+/// Depths at most this many times another are of one surface.
 inline constexpr float kOneSurface = 1.03125f;
 
-/// Samples of a pixel, each linear colour and depth above 0, as surfaces: the nearer one has the
-/// samples before 2 / (1 / nearest + 1 / farthest), where circles of confusion have half their
-/// difference. Colours and depths are means, sums in the samples' order times 1 / count.
-PixelSurfaces surfaces_of(std::span<const glm::vec4> samples);
+inline bool is_one_surface(float depth, float other) {
+  return depth <= other * kOneSurface && other <= depth * kOneSurface;
+}
 
-/// Where a pass leaves what surfaces_of() makes of each pixel: images of the target's pixels.
-struct SurfaceTargets {
-  Image* picture = nullptr;   ///< RGBA16F
-  Image* other = nullptr;     ///< RGBA16F: the other surface; anything where it has no part
-  Image* coverage = nullptr;  ///< r8: the other surface's part of the pixel
-  /// r32f, or null: window depths of `picture`, at its surface's first sample.
-  Image* depth = nullptr;
-  int y_begin = 0;  ///< the row of the target that is the images' first
+struct OtherSurface {
+  glm::vec4 texel{};
+  int samples = 0;
 };
 
-/// The surfaces of an area's pixels from multisampled images, of colour with depth in alpha and of
-/// window depths.
-void find_surfaces(const Image& colour, const Image& depth, int samples, const Rectangle& area,
-                   const SurfaceTargets& to, const Profile& profile);
+/// Of samples, linear colour and depth, those of one surface alike, that which lies apart from the
+/// centre's. If all have the centre's depth, it is all of them. Else it is those whose 1 / depth,
+/// in which circles of confusion are linear, is nearer to that of the sample farthest from the
+/// centre than to the centre's. Of these it has the mean colour, a sum in their order times 1 /
+/// count, and the depth that most of them have, the first of these.
+OtherSurface other_surface(float centre_depth, std::span<const glm::vec4> samples);
+
+/// The edges of a picture from a multisampled image of it, both with depths in alpha. The centre's
+/// surface is what is_one_surface() with it.
+void find_edges(const Image& picture, const Image& multisampled, const EdgeTargets& to,
+                const Profile& profile, ThreadPool& pool);
 
 /// How an r8 image holds `count` of `samples`.
 inline std::uint8_t coverage_byte(int count, int samples) {

@@ -67,11 +67,11 @@ void clear_behind_in(const RenderPass& pass, const Rectangle& area, const glm::v
 // first, the VisibilityTile clears: it need only clear the pixels that show no triangle.
 class TileDrawing {
  public:
-  /// Draws in lanes go to `texels`, or to the target if that is null. `keeps_samples`: if surfaces
-  /// are wanted, the tile keeps their samples, as no draw needs the targets.
-  TileDrawing(const RenderPass& pass, const Rectangle& area, TileMemory& memory, std::byte* texels,
-              bool keeps_samples)
-      : pass_(pass), area_(area), memory_(memory), texels_(texels), keeps_samples_(keeps_samples) {}
+  /// Draws in lanes go to `texels`, or to the target if that is null.
+  TileDrawing(const RenderPass& pass, const Rectangle& area, TileMemory& memory, std::byte* texels)
+      : pass_(pass), area_(area), memory_(memory), texels_(texels) {
+    if (pass.edges) clear_coverage();
+  }
 
   void draw(const TileWork& item) {
     if (item.draw->lane_steps != nullptr) {
@@ -95,16 +95,9 @@ class TileDrawing {
       clear();
       clear_behind_in(pass_, area_, *pass_.clear_colour, *pass_.clear_depth);
     }
-    if (keeps_samples_) {
-      resolve_samples();
-      return;
-    }
+    is_last_ = true;
     leave_lanes(pass_.keep_depth);
     clear();
-    if (!pass_.surfaces) return;
-    const RenderTargets& targets = pass_.targets;
-    find_surfaces(*targets.colour[0], *targets.depth, targets.samples, area_, *pass_.surfaces,
-                  pass_.profile);
   }
 
  private:
@@ -128,14 +121,15 @@ class TileDrawing {
   void begin_lanes() {
     has_begun_ = true;
     if (!memory_) memory_.reset(new VisibilityTile);  // not zeroed: begin_tile() fills it
-    begin_tile(*memory_, area_, pass_.targets, is_cleared_ ? std::nullopt : pass_.clear_depth);
+    begin_tile(*memory_, area_, pass_.targets, is_cleared_ ? std::nullopt : pass_.clear_depth,
+               pass_.edges && !is_cleared_ ? pass_.edges->samples : 0);
+    give_edges_texels();
     if (texels_ != nullptr) {
       memory_->front.texels = texels_;
       memory_->front.stride_bytes =
           kTexelBytes * static_cast<std::size_t>(area_.x_end - area_.x_begin);
       return;
     }
-    if (keeps_samples_) return keep_samples();
     const auto samples = static_cast<std::size_t>(pass_.targets.samples);
     for (std::size_t i = 0; i < memory_->layers; ++i) {
       Image& target =
@@ -147,35 +141,26 @@ class TileDrawing {
     }
   }
 
-  // Of the first sample the texels that are shaded at pixels' centres go to the picture, all others
-  // to the tile's memory.
-  void keep_samples() {
+  void give_edges_texels() {
     VisibilityTile& tile = *memory_;
     constexpr std::size_t kSampleBytes = kTilePixels * kTexelBytes;
-    const std::size_t bytes = tile.layers * kSampleBytes;
-    if (tile.sample_texels_room < bytes) {
-      tile.sample_texels.reset(new std::byte[bytes]);
-      tile.sample_texels_room = bytes;
+    const std::size_t bytes = tile.edge_samples * kSampleBytes;
+    if (tile.edge_texels_room < bytes) {
+      tile.edge_texels.reset(new std::byte[bytes]);  // not zeroed
+      tile.edge_texels_room = bytes;
     }
-    Image& picture = *pass_.surfaces->picture;
-    Rectangle area = area_;
-    area.y_begin -= pass_.surfaces->y_begin;
-    tile.front.texels = first_texel(picture, area);
-    tile.front.stride_bytes = picture.stride_bytes;
-    for (std::size_t s = 1; s < tile.layers; ++s) {
-      tile.layer(s).texels = tile.sample_texels.get() + s * kSampleBytes;
-      tile.layer(s).stride_bytes = kTileSize * kTexelBytes;
+    for (std::size_t s = 0; s < tile.edge_samples; ++s) {
+      tile.layer(tile.layers + s).texels = tile.edge_texels.get() + s * kSampleBytes;
+      tile.layer(tile.layers + s).stride_bytes = kTileSize * kTexelBytes;
     }
   }
 
-  void resolve_samples() {
-    if (!has_begun_) begin_lanes();
-    VisibilityTile& tile = *memory_;
-    find_mixed(pass_.isa, tile, false);
-    list_surfaces(tile);
-    clear_layers(1);
-    shade_tile(tile);
-    resolve_surfaces(pass_.isa, tile, *pass_.surfaces, *pass_.clear_colour, pass_.profile);
+  void clear_coverage() const {
+    for (int y = area_.y_begin; y < area_.y_end; ++y) {
+      std::memset(row<std::uint8_t>(*pass_.edges->coverage, y - pass_.edges->y_begin).data() +
+                      area_.x_begin,
+                  0, static_cast<std::size_t>(area_.x_end - area_.x_begin));
+    }
   }
 
   void clear_layers(std::size_t layers) const {
@@ -183,16 +168,22 @@ class TileDrawing {
   }
 
   void shade() {
-    if (memory_->has_samples) {
-      find_mixed(pass_.isa, *memory_, true);
-      list_further(*memory_);
+    VisibilityTile& tile = *memory_;
+    // Edges are of all triangles.
+    const bool has_edges = tile.edge_samples > 0 && is_last_ && !is_cleared_;
+    if (has_edges) {
+      find_edge_pixels(pass_.isa, tile);
+      list_edges(tile);
     }
-    if (!is_cleared_ && pass_.clear_colour) {
-      clear_layers(memory_->layers);
+    if (tile.has_samples) {
+      find_mixed(pass_.isa, tile);
+      list_further(tile);
     }
+    if (!is_cleared_ && pass_.clear_colour) clear_layers(tile.layers);
     is_cleared_ = true;
-    shade_tile(*memory_);
-    if (memory_->has_samples) copy_to_samples(*memory_);
+    shade_tile(tile);
+    if (tile.has_samples) copy_to_samples(tile);
+    if (has_edges) store_edges(pass_.isa, tile, *pass_.edges, *pass_.clear_colour, pass_.profile);
   }
 
   void leave_lanes(bool needs_depth) {
@@ -212,7 +203,7 @@ class TileDrawing {
   Rectangle area_;
   TileMemory& memory_;
   std::byte* texels_;
-  bool keeps_samples_;
+  bool is_last_ = false;  // no triangle comes after those that have been
   bool has_begun_ = false;
   bool is_cleared_ = false;
 };
@@ -222,21 +213,13 @@ bool is_in_lanes(std::span<const TileWork> work) {
                      [](const TileWork& item) { return item.draw->lane_steps != nullptr; });
 }
 
-// Whether a tile's triangles are shaded when all of them have passed, so that it can keep samples.
-bool keeps_all_samples(std::span<const TileWork> work) {
-  std::size_t triangles = 0;
-  for (const TileWork& item : work) triangles += item.bins.size();
-  return is_in_lanes(work) && triangles <= kMostVisible;
-}
-
 void draw_tile(const RenderPass& pass, const TileLists& lists, int tile, TileMemory& memory,
                std::byte* texels) {
   assert(!has_layers(pass.targets) ||
          pass.clear_colour.has_value() == pass.clear_depth.has_value());
-  assert(!pass.surfaces || pass.targets.samples > 1);
+  assert(!pass.edges || (pass.clear_colour && pass.clear_depth && pass.targets.samples == 1));
   const std::span<const TileWork> work = work_of_tile(lists, tile);
-  const bool keeps_samples = pass.surfaces && pass.clear_colour && keeps_all_samples(work);
-  TileDrawing drawing{pass, tile_area(lists, tile), memory, texels, keeps_samples};
+  TileDrawing drawing{pass, tile_area(lists, tile), memory, texels};
   for (std::size_t i = 0; i < work.size(); ++i) {
     // The next item was listed long ago, and has left the caches.
     if (i + 1 < work.size()) __builtin_prefetch(work[i + 1].bins.data());
@@ -254,13 +237,6 @@ Rectangle target_area(const RenderTargets& targets) {
   }
   assert(first != nullptr);
   return {0, 0, first->width, first->height / targets.samples};
-}
-
-bool needs_targets(const TileLists& lists) {
-  for (int tile = 0; tile < tile_count(lists); ++tile) {
-    if (!keeps_all_samples(work_of_tile(lists, tile))) return true;
-  }
-  return false;
 }
 
 void draw_tile(const RenderPass& pass, const TileLists& lists, int tile, TileMemory& memory) {

@@ -44,9 +44,9 @@ struct RenderPass {
   std::optional<float> behind_before = {};
   /// Whether depths are wanted after finish(). If not, the depth buffer may hold anything then.
   bool keep_depth = true;
-  /// Pixels' surfaces are wanted, and not the targets. These may hold anything then. A pass that
-  /// clears, and whose draws are in lanes, does not touch them unless it needs_targets().
-  std::optional<SurfaceTargets> surfaces = {};
+  /// The edges of the picture too. Needs a pass that clears, all of whose draws are in lanes, of
+  /// one sample a pixel. A tile of more than kMostVisible triangles has none.
+  std::optional<EdgeTargets> edges = {};
   /// The vector unit of draws in lanes.
   Isa isa = Isa::scalar;
   std::vector<DrawCall> draws;
@@ -91,10 +91,6 @@ using TileMemory = std::unique_ptr<VisibilityTile>;
 /// threads at once, each with its own memory. So passes that show one scene from several points
 /// can be drawn tile by tile, while a tile is in a core's cache.
 void draw_tile(const RenderPass& pass, const TileLists& lists, int tile, TileMemory& memory);
-
-/// Whether a pass that wants surfaces touches its targets: if a draw is not in lanes, or a tile has
-/// too many triangles.
-bool needs_targets(const TileLists& lists);
 
 /// Draws one tile to `texels`, as RGBA16F in rows without gaps. The targets' own tile holds
 /// anything afterwards; it is not touched if all draws are in lanes and depths are not kept, and

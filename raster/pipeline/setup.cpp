@@ -27,7 +27,8 @@ int ceil_to_pixel(std::int64_t snapped) {
 }  // namespace
 
 std::optional<EdgeFunctions> make_edge_functions(const std::array<WindowVertex, 3>& vertices,
-                                                 const Profile& profile, int samples) {
+                                                 const Profile& profile, int samples,
+                                                 int edge_samples) {
   assert(profile.subpixel_bits >= 4 && profile.subpixel_bits <= kSubpixelBits);
   std::array<std::int64_t, 3> x{};
   std::array<std::int64_t, 3> y{};
@@ -44,7 +45,7 @@ std::optional<EdgeFunctions> make_edge_functions(const std::array<WindowVertex, 
   functions.area = functions.clockwise ? area : -area;
   const auto [x_min, x_max] = std::minmax({x[0], x[1], x[2]});
   const auto [y_min, y_max] = std::minmax({y[0], y[1], y[2]});
-  const int reach = sample_reach(samples);
+  const int reach = std::max(sample_reach(samples), sample_reach(edge_samples));
   functions.bounds = {ceil_to_pixel(x_min - reach), ceil_to_pixel(y_min - reach),
                       floor_to_pixel(x_max + reach) + 1, floor_to_pixel(y_max + reach) + 1};
 
@@ -207,7 +208,8 @@ bool is_drawable(const WindowVertex& v) {
 
 std::optional<TriangleSetup> set_up_triangle(const std::array<WindowVertex, 3>& vertices, Cull cull,
                                              FrontFace front_face, const Rectangle& clip,
-                                             const Profile& profile, int samples) {
+                                             const Profile& profile, int samples,
+                                             int edge_samples) {
   if (!std::all_of(vertices.begin(), vertices.end(), is_drawable)) return std::nullopt;
   TriangleSetup setup{};
   setup.vertices = vertices;
@@ -220,7 +222,7 @@ std::optional<TriangleSetup> set_up_triangle(const std::array<WindowVertex, 3>& 
     return setup.bounds.x_begin < setup.bounds.x_end && setup.bounds.y_begin < setup.bounds.y_end;
   };
   const bool covers = profile.coverage == Coverage::edge_functions
-                          ? take(make_edge_functions(vertices, profile, samples))
+                          ? take(make_edge_functions(vertices, profile, samples, edge_samples))
                           : take(make_scanlines(vertices));
   if (!covers) return std::nullopt;
 

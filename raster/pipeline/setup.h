@@ -80,9 +80,11 @@ inline bool inside(const EdgeFunction& edge, std::int64_t value) {
 
 /// Positions are snapped by round-to-nearest-even of (window - 0.5) * 2^subpixel_bits,
 /// both operations in binary32; with more samples than 1, of window * 2^subpixel_bits, as llvmpipe
-/// does. Needs |x|, |y| <= 2^20. Nothing for a triangle of no area.
+/// does. Bounds hold the pixels' samples, or, with `edge_samples`, so many besides their centres.
+/// Needs |x|, |y| <= 2^20. Nothing for a triangle of no area.
 std::optional<EdgeFunctions> make_edge_functions(const std::array<WindowVertex, 3>& vertices,
-                                                 const Profile& profile, int samples = 1);
+                                                 const Profile& profile, int samples = 1,
+                                                 int edge_samples = 1);
 
 /// The covered pixels of row y among x_begin <= x < x_end: one span, as a triangle is convex.
 /// `place`: of the sample that is looked at, from a pixel's centre.
@@ -141,7 +143,8 @@ struct TriangleSetup {
 /// that is not finite. `clip` lies within the target.
 std::optional<TriangleSetup> set_up_triangle(const std::array<WindowVertex, 3>& vertices, Cull cull,
                                              FrontFace front_face, const Rectangle& clip,
-                                             const Profile& profile, int samples = 1);
+                                             const Profile& profile, int samples = 1,
+                                             int edge_samples = 1);
 
 /// Culling by unsnapped positions; no area counts as a back face. Mesa's drivers do this, too, to
 /// all triangles that they send through their clipping stages.

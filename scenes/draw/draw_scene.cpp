@@ -376,7 +376,6 @@ void draw_in_passes(const PreparedScene& prepared, const CameraMatrices& camera,
                     std::span<const Light> lights, RenderPass& pass, ThreadPool& pool) {
   const Scene& scene = *prepared.scene;
   const std::optional<float> behind_before = std::exchange(pass.behind_before, std::nullopt);
-  const std::optional<SurfaceTargets> surfaces = std::exchange(pass.surfaces, std::nullopt);
   pass.clear_colour = clear_colour(scene);
   pass.clear_depth = 1.0f;
   pass.keep_depth = true;
@@ -395,7 +394,6 @@ void draw_in_passes(const PreparedScene& prepared, const CameraMatrices& camera,
     draw_surface(prepared, surface, pass);
     chunks += more;
   }
-  pass.surfaces = surfaces;
   finish(pass, pool);
   pass.behind_before = behind_before;
   if (behind_before && has_layers(pass.targets))
@@ -460,28 +458,6 @@ std::vector<TransparentPicture> draw_transparent(PreparedScene& prepared,
   return pictures;
 }
 
-void draw_layers(PreparedScene& prepared, const CameraMatrices& camera, double frame,
-                 Image& picture, std::span<Image> behind, ThreadPool& pool,
-                 std::optional<double> behind_before_m) {
-  assert(behind.size() < kMaxLayers);
-  RenderTargets& targets = prepared.pass.targets;
-  targets.colour[0] = &picture;
-  targets.depth = of_size(prepared.depth, picture);
-  targets.behind = {};
-  if (prepared.depths_behind.size() < behind.size()) prepared.depths_behind.resize(behind.size());
-  for (std::size_t i = 0; i < behind.size(); ++i) {
-    targets.behind[i] = {&behind[i], of_size(prepared.depths_behind[i], picture)};
-  }
-  RenderPass& pass = prepared.pass;
-  pass.behind_before = {};
-  if (behind_before_m) {
-    pass.behind_before = buffer_depth(prepared.scene->camera, *behind_before_m);
-  }
-  std::vector<Image*> layers{&picture};
-  for (Image& layer : behind) layers.push_back(&layer);
-  draw_lit(prepared, camera, frame, layers, pool);
-}
-
 namespace {
 
 void make_sized(Image& image, int width, int height, Format format = Format::rgba16f) {
@@ -489,36 +465,81 @@ void make_sized(Image& image, int width, int height, Format format = Format::rgb
   image = make_image(format, width, height);
 }
 
+// Whether all opaque draws of a scene are in lanes, and in one pass.
+bool draws_in_lanes(const PreparedScene& prepared) {
+  const Scene& scene = *prepared.scene;
+  const bool has_shaders =
+      std::any_of(scene.materials.begin(), scene.materials.end(),
+                  [](const Material& material) { return material.shaders != nullptr; });
+  return !has_shaders && can_draw_in_lanes(prepared.pass, DrawState{}) &&
+         chunks_of_scene(scene) <= kPassChunks;
+}
+
+// Of a picture that has been drawn without them.
+void find_scene_edges(PreparedScene& prepared, const CameraMatrices& camera, double frame,
+                      const Image& picture, const EdgeTargets& to, ThreadPool& pool) {
+  make_sized(prepared.sampled_colour, picture.width, picture.height * to.samples);
+  make_sized(prepared.sampled_depth, picture.width, picture.height * to.samples, Format::r32f);
+  RenderPass& pass = prepared.pass;
+  const RenderTargets targets = pass.targets;
+  pass.targets = {.colour = {&prepared.sampled_colour},
+                  .depth = &prepared.sampled_depth,
+                  .stencil = nullptr,
+                  .behind = {},
+                  .samples = to.samples};
+  pass.behind_before = {};
+  if (chunks_of_scene(*prepared.scene) > kPassChunks) {
+    draw_in_passes(prepared, camera, frame, prepared.scene->lights, pass, pool);
+  } else {
+    record_scene(prepared, camera, frame, pass);
+    finish(pass, pool);
+  }
+  pass.targets = targets;
+  find_edges(picture, prepared.sampled_colour, to, pass.profile, pool);
+}
+
 }  // namespace
 
-void draw_surfaces(PreparedScene& prepared, const CameraMatrices& camera, double frame, int samples,
-                   SurfacePictures& pictures, ThreadPool& pool) {
-  const int width = pictures.shown.width, height = pictures.shown.height;
-  make_sized(pictures.other, width, height);
-  make_sized(pictures.coverage, width, height, Format::r8);
-  // Touched where draws are not in lanes, or in several passes.
-  make_sized(prepared.sampled_colour, width, height * samples);
-  make_sized(prepared.sampled_depth, width, height * samples, Format::r32f);
+void draw_layers(PreparedScene& prepared, const CameraMatrices& camera, double frame,
+                 Image& picture, std::span<Image> behind, ThreadPool& pool,
+                 std::optional<double> behind_before_m, EdgePictures* edges) {
+  assert(behind.size() < kMaxLayers);
   RenderPass& pass = prepared.pass;
-  // Drawing fragment by fragment knows no surfaces that go on from triangle to triangle: without a
-  // vector unit lanes are four wide.
-  const Isa isa = pass.isa;
-  if (isa == Isa::scalar) {
-    pass.isa = Isa::baseline;
-    decode_textures(prepared, pool);
+  RenderTargets& targets = pass.targets;
+  targets.colour[0] = &picture;
+  targets.depth = of_size(prepared.depth, picture);
+  targets.behind = {};
+  if (prepared.depths_behind.size() < behind.size()) prepared.depths_behind.resize(behind.size());
+  for (std::size_t i = 0; i < behind.size(); ++i) {
+    targets.behind[i] = {&behind[i], of_size(prepared.depths_behind[i], picture)};
   }
-  pass.targets.colour[0] = &prepared.sampled_colour;
-  pass.targets.depth = &prepared.sampled_depth;
-  pass.targets.behind = {};
-  pass.targets.samples = samples;
   pass.behind_before = {};
-  Image* depth = prepared.has_transparent ? of_size(prepared.depth, pictures.shown) : nullptr;
-  pass.surfaces = {&pictures.shown, &pictures.other, &pictures.coverage, depth};
-  const std::array layers{&pictures.shown, &pictures.other};
-  draw_lit(prepared, camera, frame, layers, pool);
-  pass.targets.samples = 1;
-  pass.surfaces.reset();
+  if (behind_before_m) {
+    pass.behind_before = buffer_depth(prepared.scene->camera, *behind_before_m);
+  }
+  std::vector<Image*> layers{&picture};
+  for (Image& layer : behind) layers.push_back(&layer);
+  if (edges == nullptr || edges->samples == 1) {
+    draw_lit(prepared, camera, frame, layers, pool);
+    return;
+  }
+  make_sized(edges->other, picture.width, picture.height);
+  make_sized(edges->coverage, picture.width, picture.height, Format::r8);
+  const EdgeTargets to{edges->samples, &edges->other, &edges->coverage};
+  const Isa isa = pass.isa;
+  // Drawing fragment by fragment finds no edges: without a vector unit lanes are four wide.
+  if (isa == Isa::scalar) pass.isa = Isa::baseline;
+  if (draws_in_lanes(prepared)) {
+    if (isa == Isa::scalar) decode_textures(prepared, pool);
+    pass.edges = to;
+    draw_lit(prepared, camera, frame, layers, pool);
+    pass.edges.reset();
+    pass.isa = isa;
+    return;
+  }
   pass.isa = isa;
+  draw_lit(prepared, camera, frame, layers, pool);
+  find_scene_edges(prepared, camera, frame, picture, to, pool);
 }
 
 Image draw_scene(const Scene& scene, const CameraMatrices& camera, double frame, int width,
@@ -548,22 +569,14 @@ void draw_parts(PreparedScene& prepared, const CameraMatrices& camera, double fr
   parts.transparent.clear();
   parts.behind.resize(layers > 1 ? layers - 1 : 0);
   for (Image& layer : parts.behind) make_sized(layer, width, height);
-  parts.has_edges = false;
+  parts.edges.samples = 1;
   if (layers == 0) {
     draw_scene(prepared, camera, frame, parts.opaque, pool);
     return;
   }
-  parts.has_edges = samples > 1 && !prepared.shadows;
-  const bool shows_edges = parts.has_edges && layers == 1;
-  if (parts.has_edges) {
-    Image& shown = parts.edges.shown;
-    shows_edges ? std::swap(shown, parts.opaque) : make_sized(shown, width, height);
-    draw_surfaces(prepared, camera, frame, samples, parts.edges, pool);
-    if (shows_edges) parts.opaque = std::exchange(shown, {});
-  }
-  if (!shows_edges) {
-    draw_layers(prepared, camera, frame, parts.opaque, parts.behind, pool, behind_before_m);
-  }
+  parts.edges.samples = samples;
+  draw_layers(prepared, camera, frame, parts.opaque, parts.behind, pool, behind_before_m,
+              &parts.edges);
   parts.transparent = draw_transparent(prepared, camera, frame, parts.opaque, pool);
 }
 

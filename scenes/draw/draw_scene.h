@@ -97,31 +97,26 @@ PreparedScene prepare_surfaces(const Scene& scene, const Profile& profile, Threa
 void draw_scene(PreparedScene& prepared, const CameraMatrices& camera, double frame, Image& picture,
                 ThreadPool& pool);
 
+/// The edges of a picture, as EdgeSurfaces has them.
+struct EdgePictures {
+  int samples = 1;  ///< of a pixel, besides its centre: 4 or 8; 1: there are no edges
+  Image other{}, coverage{};
+};
+
 /// The nearest opaque surfaces of each pixel, by depth peeling: `picture` as draw_scene() has it
 /// but for what is transparent, behind[0] the next surface, and so on. The background is all that
 /// lies behind the last surface, again and again. Up to kMaxLayers - 1 behind, of the picture's
 /// size and format. With `behind_before_m` they show the background behind what is as far as that
-/// or farther, and cost less: no method looks behind what is in focus.
+/// or farther, and cost less: no method looks behind what is in focus. With `edges` these are those
+/// of the picture.
 void draw_layers(PreparedScene& prepared, const CameraMatrices& camera, double frame,
                  Image& picture, std::span<Image> behind, ThreadPool& pool,
-                 std::optional<double> behind_before_m = {});
+                 std::optional<double> behind_before_m = {}, EdgePictures* edges = nullptr);
 
 /// As above, `layers` new pictures, 1 to kMaxLayers, the nearest first.
 std::vector<Image> draw_layers(const Scene& scene, const CameraMatrices& camera, double frame,
                                int width, int height, std::size_t layers, const Profile& profile,
                                ThreadPool& pool);
-
-/// Pictures of the surfaces that pixels show, each pixel two at most, as EdgeSurfaces has them:
-/// RGBA16F, and an r8 coverage.
-struct SurfacePictures {
-  Image shown{}, other{}, coverage{};
-};
-
-/// The nearest opaque surfaces at 4 or 8 samples a pixel. `shown` is like draw_layers()'s picture,
-/// but for pixels on an edge: it has the surface that has the larger part of them, with the mean of
-/// the colours that it has there.
-void draw_surfaces(PreparedScene& prepared, const CameraMatrices& camera, double frame, int samples,
-                   SurfacePictures& pictures, ThreadPool& pool);
 
 /// The transparent surfaces before a picture that draw_layers() has just drawn of the same frame,
 /// as depth of field takes them: the nearest layer first, and none that is empty.
@@ -164,10 +159,7 @@ struct FrameParts {
   std::vector<Image> behind;                    ///< and its others
   std::vector<TransparentPicture> transparent;  ///< before `opaque`
   Image blended;                                ///< these over it; none if nothing is transparent
-  /// The opaque picture's edges, if it has some. Of one layer `opaque` is what they show, and
-  /// `shown` is empty.
-  SurfacePictures edges{};
-  bool has_edges = false;
+  EdgePictures edges{};                         ///< of `opaque`
 
   /// All of it, as draw_scene() has it. Needs blend().
   const Image& picture() const { return transparent.empty() ? opaque : blended; }
@@ -175,7 +167,7 @@ struct FrameParts {
 
 /// Draws a frame, with `layers` - 1 opaque surfaces behind the first, as draw_layers(), into the
 /// memory of `parts` as far as it has the size; without blend(). 0 layers: draw_scene() alone. With
-/// 4 or 8 samples a pixel it has edges, unless the scene has shadows.
+/// 4 or 8 `samples` it has edges.
 void draw_parts(PreparedScene& prepared, const CameraMatrices& camera, double frame, int width,
                 int height, std::size_t layers, FrameParts& parts, ThreadPool& pool,
                 std::optional<double> behind_before_m = {}, int samples = 1);
@@ -191,9 +183,8 @@ auto with_dof_input(const FrameParts& parts, const DofSettings& settings, const 
   const std::vector<ConstImageView> behind{parts.behind.begin(), parts.behind.end()};
   const bool is_one = parts.transparent.empty() || !radii_px.empty();
   EdgeSurfaces edges;
-  if (parts.has_edges && radii_px.empty()) {
-    const SurfacePictures& of = parts.edges;
-    edges = {of.coverage, of.shown.bytes.empty() ? parts.opaque : of.shown, of.other};
+  if (parts.edges.samples > 1 && radii_px.empty()) {
+    edges = {parts.edges.coverage, parts.edges.other};
   }
   const std::vector<TransparentLayer> transparent =
       is_one ? std::vector<TransparentLayer>{} : views_of(parts.transparent);

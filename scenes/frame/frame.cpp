@@ -62,7 +62,7 @@ float largest_circle_px(const FrameParts& parts, const PixelCoc& coc, ThreadPool
 
 // Without depth of field.
 Image pinhole_of(const Shot& shot, const FrameParts& parts, ThreadPool& pool) {
-  if (!parts.has_edges) return parts.picture();
+  if (parts.edges.samples == 1) return parts.picture();
   return with_dof_input(parts, {}, shot.profile, {}, {}, [&](const DofInput& input) {
     return apply(*find_method("pinhole"), input, pool);
   });
@@ -97,7 +97,7 @@ Image filtered(const Shot& shot, const DrawnFrame& drawn, const UsedLens& lens, 
     Image result = picture_like(parts.picture(), memory);
     two_pass_in(shot.arithmetic, {parts.picture(), lens.settings, shot.profile}, result, pool);
     // What is transparent is in the picture, and edges behind it are not.
-    if (parts.has_edges && parts.transparent.empty()) {
+    if (parts.edges.samples > 1 && parts.transparent.empty()) {
       with_dof_input(parts, lens.settings, shot.profile, {}, {},
                      [&](const DofInput& input) { smooth_edges(input, result, pool); });
     }

@@ -86,8 +86,8 @@ struct FrameRows::State {
         pool(with),
         on_stage(std::move(told)),
         prepared(prepare_scene(*of.scene, of.profile, with)),
-        picture(without_texels(Format::rgba16f, of.width, of.height * of.samples)),
-        depth(without_texels(Format::r32f, of.width, of.height * of.samples)) {
+        picture(without_texels(Format::rgba16f, of.width, of.height)),
+        depth(without_texels(Format::r32f, of.width, of.height)) {
     DrawnFrame as_drawn{
         .view = camera_matrices(shot.scene->camera, shot.frame, shot.width, shot.height)};
     as_drawn.parts.opaque = without_texels(Format::rgba16f, shot.width, shot.height);
@@ -98,13 +98,9 @@ struct FrameRows::State {
     RenderPass& pass = prepared.pass;
     pass.targets.colour[0] = &picture;
     pass.targets.depth = &depth;
-    pass.targets.samples = shot.samples;
+    if (shot.samples > 1) pass.edges = EdgeTargets{shot.samples, &other, &coverage};
     record_scene(prepared, frame.view, shot.frame, pass);
     sort_into_tiles({&pass, 1}, {&tiles, 1}, pool);
-    if (shot.samples > 1 && needs_targets(tiles)) {
-      picture = make_image(picture.format, picture.width, picture.height);
-      depth = make_image(depth.format, depth.width, depth.height);
-    }
     if (is_two_pass(shot)) edge_settings = frame.lens->settings;
     if (is_two_pass(shot)) {
       stream.emplace(shot.width, frame.lens->settings, shot.profile, pool.isa());
@@ -124,7 +120,11 @@ struct FrameRows::State {
     const Rectangle corner = tile_area(tiles, first);
     const int rows = corner.y_end - corner.y_begin;
     if (drawn.height != rows) drawn = make_image(Format::rgba16f, shot.width, rows);
-    if (shot.samples > 1) return draw_edges(first, corner.y_begin);
+    if (shot.samples > 1 && other.height != rows) {
+      other = make_image(Format::rgba16f, shot.width, rows);
+      coverage = make_image(Format::r8, shot.width, rows);
+    }
+    if (shot.samples > 1) prepared.pass.edges->y_begin = corner.y_begin;
     struct Scratch {
       TileMemory memory{};
       std::vector<std::byte> texels{};
@@ -141,15 +141,7 @@ struct FrameRows::State {
     });
   }
 
-  void draw_edges(int first, int y_begin) {
-    if (other.height != drawn.height) {
-      other = make_image(Format::rgba16f, shot.width, drawn.height);
-      coverage = make_image(Format::r8, shot.width, drawn.height);
-    }
-    prepared.pass.surfaces = {&drawn, &other, &coverage, nullptr, y_begin};
-    for_each_with<TileMemory>(pool, tiles.tiles_x, [&](int i, TileMemory& memory) {
-      draw_tile(prepared.pass, tiles, first + i, memory);
-    });
+  void keep_edges() {
     const auto copy = [](const auto& from) { return std::vector(from.begin(), from.end()); };
     for (int y = 0; y < drawn.height; ++y) {
       waiting.push_back({.scene = copy(row<std::uint16_t>(drawn, y)),
@@ -181,7 +173,6 @@ struct FrameRows::State {
       rows.filtered[static_cast<std::size_t>(i)] = of.filtered;
     }
     const EdgeRow& own = edge_row(y);
-    rows.shown = own.scene;
     rows.other = own.other;
     rows.coverage = own.coverage;
     std::vector<SmoothPixel> changed;
@@ -205,6 +196,7 @@ struct FrameRows::State {
     }
     tell(FrameStage::drawing);
     draw_band();
+    if (shot.samples > 1) keep_edges();
     if (on_drawn) on_drawn(drawn);
     if (stream) tell(FrameStage::filtering);
     for (int y = 0; y < drawn.height; ++y) {

@@ -18,7 +18,11 @@
 namespace softfocus {
 
 void assemble_lanes(Isa isa, const AssembleJob& job, LaneChunk& chunk) {
-  SOFTFOCUS_KERNEL(isa, assemble)(job, chunk);
+  // Where in a pixel a triangle is looked for.
+  std::array<glm::ivec2, 1 + kMaxSamples> places;
+  auto end = std::ranges::copy(sample_places(job.samples), places.begin()).out;
+  if (job.edge_samples > 1) end = std::ranges::copy(sample_places(job.edge_samples), end).out;
+  SOFTFOCUS_KERNEL(isa, assemble)(job, {places.begin(), end}, chunk);
 }
 
 }  // namespace softfocus
@@ -158,12 +162,11 @@ SOFTFOCUS_INLINE void copy_triangle(const TriangleColumns& columns, std::size_t 
 }  // namespace
 
 /// assemble_lanes() on a unit.
-void assemble(const AssembleJob& job, LaneChunk& chunk) {
+void assemble(const AssembleJob& job, std::span<const glm::ivec2> places, LaneChunk& chunk) {
   constexpr std::int32_t kClipBits = (1 << 6) - 1;
   const VertexStore& vertices = job.vertices;
   const bool planes = job.profile->attributes == AttributeSetup::planes_from_origin;
-  const std::span<const glm::ivec2> places = sample_places(job.samples);
-  const int reach = sample_reach(job.samples);
+  const int reach = std::max(sample_reach(job.samples), sample_reach(job.edge_samples));
   TriangleColumns columns;
 
   for (std::size_t begin = job.begin; begin < job.end; begin += kLanes) {

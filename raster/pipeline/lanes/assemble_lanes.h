@@ -22,7 +22,8 @@ struct AssembleJob {
   bool cull_unsnapped;
   std::size_t provoking;  ///< the vertex that gives flat varyings their value: 0 or 2
   Rectangle clip;
-  int samples;  ///< of a pixel
+  int samples;       ///< of a pixel
+  int edge_samples;  ///< besides its centre; 1: none
   const Profile* profile;
   /// Adds a triangle that is large or has to be clipped.
   void (*add_slowly)(const AssembleJob& job, LaneChunk& chunk, std::size_t triangle);

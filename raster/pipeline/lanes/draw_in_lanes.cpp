@@ -43,11 +43,20 @@ void assemble_chunk(const LaneDraw& draw, std::uint32_t number, LaneChunk& chunk
   const bool may_cull_unsnapped =
       state.cull != Cull::none && draw.profile.clipping == Clipping::mesa;
   for (std::size_t begin = chunk_begin; begin < chunk_end; begin += kBatchTriangles) {
-    AssembleJob job{
-        draw.store,  draw.indices,     begin,         std::min(begin + kBatchTriangles, chunk_end),
-        state.cull,  state.front_face, false,         provoking_index(state),
-        draw.target, draw.samples,     &draw.profile, add_slowly,
-        context};
+    AssembleJob job{draw.store,
+                    draw.indices,
+                    begin,
+                    std::min(begin + kBatchTriangles, chunk_end),
+                    state.cull,
+                    state.front_face,
+                    false,
+                    provoking_index(state),
+                    draw.target,
+                    draw.samples,
+                    draw.edge_samples,
+                    &draw.profile,
+                    add_slowly,
+                    context};
     job.cull_unsnapped = may_cull_unsnapped && any_vertex_outside(job);
     assemble_lanes(draw.isa, job, chunk);
   }
@@ -59,7 +68,7 @@ void add_triangle(const LaneDraw& draw, LaneChunk& chunk, const std::array<Windo
   const DrawState& state = draw.state;
   if (cull_unsnapped && is_culled_unsnapped(window, state.cull, state.front_face)) return;
   const auto setup = set_up_triangle(window, state.cull, state.front_face, draw.target,
-                                     draw.profile, draw.samples);
+                                     draw.profile, draw.samples, draw.edge_samples);
   if (!setup) return;
   LaneTriangle& t = add_set_up_triangle(chunk, *setup, provoking_index(state), draw.profile);
   for (std::size_t i = 0; i < 3; ++i) {

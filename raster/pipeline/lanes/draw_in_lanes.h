@@ -34,8 +34,11 @@ struct FragmentJob {
   std::size_t provoking;
   const Profile* profile;
   int samples;        ///< of a pixel
-  std::size_t layer;  ///< of the tile; of several samples, 1: all but the first
+  std::size_t layer;  ///< of the tile, or kFurther
 };
+
+/// In place of a layer: VisibilityTile::further.
+inline constexpr std::size_t kFurther = ~std::size_t{0};
 
 /// The stages of a draw, compiled for a vector unit (vertex_lanes.inl, shade_lanes.inl).
 /// Fragments are discarded before the depth test, and those that are left are shaded later.
@@ -64,6 +67,7 @@ struct LaneDraw {
   Isa isa;
   Rectangle target;
   int samples;
+  int edge_samples;  ///< besides a pixel's centre; 1: none
   std::span<const std::uint32_t> indices;
   VertexStore store;
 };
@@ -159,8 +163,14 @@ void draw_in_lanes(RenderPass& pass, const DrawState& state, std::span<const std
   const bool keeps = stages.keep_fragments != nullptr;
   assert(discards(fragment_stage) == keeps);
   using Recorded = draw_detail::RecordedInLanes<VertexStage, FragmentStage>;
-  const draw_detail::LaneDraw draw{
-      state, pass.profile, pass.isa, target_area(pass.targets), pass.targets.samples, indices, {}};
+  const draw_detail::LaneDraw draw{state,
+                                   pass.profile,
+                                   pass.isa,
+                                   target_area(pass.targets),
+                                   pass.targets.samples,
+                                   pass.edges ? pass.edges->samples : 1,
+                                   indices,
+                                   {}};
   const std::size_t varyings = varying_count(fragment_stage);
   draw_detail::record(
       pass,

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "raster/images/texel.h"
 #include "raster/pipeline/multisample.h"
@@ -80,9 +81,10 @@ struct TriangleDepths {
     return on_planes(column, line);
   }
 
-  // At a sample, whose edge functions are given.
-  SOFTFOCUS_INLINE Floats at_sample(int x, int y, Floats e1, Floats e2,
-                                    const glm::ivec2& place) const {
+  // At a sample, whose edge functions are given. `centre`: of pixel (0, 0), from the planes'
+  // origin.
+  SOFTFOCUS_INLINE Floats at_sample(int x, int y, Floats e1, Floats e2, const glm::ivec2& place,
+                                    float centre) const {
     if (form == DepthForm::barycentric) {
       const Floats depth = (z0 + (e1 * inverse_area) * z1) + (e2 * inverse_area) * z2;
       return needs_no_clamp ? depth : clamped_depth(depth);
@@ -90,11 +92,11 @@ struct TriangleDepths {
     if (form == DepthForm::by_profile && profile.attributes == AttributeSetup::exact_barycentric) {
       return at(x, y, e1, e2);
     }
-    const auto from_corner = [](int from_centre) {
-      return 0.5f + static_cast<float>(from_centre) / 256.0f;
+    const auto from_origin = [&](int from_centre) {
+      return centre + static_cast<float>(from_centre) / 256.0f;
     };
-    return on_planes(to_floats(x + lane_x()) + from_corner(place.x),
-                     to_floats(y + lane_y()) + from_corner(place.y));
+    return on_planes(to_floats(x + lane_x()) + from_origin(place.x),
+                     to_floats(y + lane_y()) + from_origin(place.y));
   }
 
  private:
@@ -114,13 +116,21 @@ SOFTFOCUS_INLINE Mask kept(const DrawCall& draw, const LaneTriangle& triangle, i
   return (splat(static_cast<std::int32_t>(bits)) >> lane_numbers() & 1) != 0;
 }
 
+SOFTFOCUS_INLINE std::size_t first_sample_layer(const VisibilityTile& tile) {
+  return tile.has_samples ? 0 : tile.layers;
+}
+
+SOFTFOCUS_INLINE std::span<const glm::ivec2> places_of(const VisibilityTile& tile) {
+  return sample_places(static_cast<int>(tile.has_samples ? tile.layers : tile.edge_samples));
+}
+
 // A writer tests the covered lanes of a part of a block, and keeps the triangle's id where it is
 // seen.
 
 /// For a tile of one layer. Scenes are drawn with Compare::less, which has code of its own.
 template <bool kLess, bool kDiscards, DepthForm form>
 struct DepthWriter {
-  static constexpr bool kHasSamples = false;
+  static constexpr bool kHasCentre = true, kHasSamples = false;
   const DrawCall& draw;
   const LaneTriangle& triangle;
   VisibilityTile& tile;
@@ -142,25 +152,27 @@ struct DepthWriter {
   }
 };
 
-/// For a tile of several samples a pixel, each with a layer.
+/// For the samples of pixels, each with a layer.
 template <bool kLess, bool kDiscards, DepthForm form>
 struct SampleWriter {
-  static constexpr bool kHasSamples = true;
+  static constexpr bool kHasCentre = false, kHasSamples = true;
   const DrawCall& draw;
   const LaneTriangle& triangle;
   VisibilityTile& tile;
   std::int32_t id;
   TriangleDepths<form> depths;
-  std::span<const glm::ivec2> places = sample_places(static_cast<int>(tile.layers));
+  std::size_t first_layer = first_sample_layer(tile);
+  float centre = tile.has_samples ? 0.5f : 0.0f;
+  std::span<const glm::ivec2> places = places_of(tile);
   Mask keeps{};  ///< of the part, once it is known
   bool knows_kept = false;
 
   SOFTFOCUS_INLINE void begin_part() { knows_kept = false; }
 
-  SOFTFOCUS_INLINE void write(int x, int y, std::size_t at, Mask covered, Floats e1, Floats e2,
-                              std::size_t sample) {
-    const Floats depth = depths.at_sample(x, y, e1, e2, places[sample]);
-    TileLayer& layer = tile.layer(sample);
+  SOFTFOCUS_INLINE void write_sample(int x, int y, std::size_t at, Mask covered, Floats e1,
+                                     Floats e2, std::size_t sample) {
+    const Floats depth = depths.at_sample(x, y, e1, e2, places[sample], centre);
+    TileLayer& layer = tile.layer(first_layer + sample);
     const Floats stored = load(&layer.depth[at]);
     Mask seen = covered & passes(kLess ? Compare::less : draw.depth.test, depth, stored);
     if (kDiscards && draw.lane_steps->keep != nullptr) {
@@ -174,10 +186,31 @@ struct SampleWriter {
   }
 };
 
+/// For pixels' centres and the samples of edges.
+template <class Centre, class Samples>
+struct EdgeWriter {
+  static constexpr bool kHasCentre = true, kHasSamples = true;
+  Centre of_centre;
+  Samples of_samples;
+
+  EdgeWriter(const DrawCall& draw, const LaneTriangle& triangle, VisibilityTile& tile,
+             std::int32_t id, const decltype(Centre::depths)& depths)
+      : of_centre{draw, triangle, tile, id, depths}, of_samples{draw, triangle, tile, id, depths} {}
+
+  SOFTFOCUS_INLINE void begin_part() { of_samples.begin_part(); }
+  SOFTFOCUS_INLINE void write(int x, int y, std::size_t at, Mask covered, Floats e1, Floats e2) {
+    of_centre.write(x, y, at, covered, e1, e2);
+  }
+  SOFTFOCUS_INLINE void write_sample(int x, int y, std::size_t at, Mask covered, Floats e1,
+                                     Floats e2, std::size_t sample) {
+    of_samples.write_sample(x, y, at, covered, e1, e2, sample);
+  }
+};
+
 /// For a tile of kLayers: as insert_into_layers(), from the farthest layer to the nearest.
 template <std::size_t kLayers>
 struct LayerWriter {
-  static constexpr bool kHasSamples = false;
+  static constexpr bool kHasCentre = true, kHasSamples = false;
   const DrawCall& draw;
   const LaneTriangle& triangle;
   VisibilityTile& tile;
@@ -231,6 +264,7 @@ template <class Number>
 struct SampleSteps {
   std::array<std::array<Number, 3>, kMaxSamples> of_sample;
   std::array<Number, 3> most;
+  std::size_t count = 0;
 };
 
 // `slopes`: an edge function's differences over 1/256 pixel along x and y.
@@ -239,14 +273,16 @@ SOFTFOCUS_INLINE SampleSteps<Number> sample_steps(const VisibilityTile& tile,
                                                   const Slopes& slopes) {
   SampleSteps<Number> steps;
   if constexpr (Writer::kHasSamples) {
-    const std::span<const glm::ivec2> places = sample_places(static_cast<int>(tile.layers));
+    const std::span<const glm::ivec2> places = places_of(tile);
+    steps.count = places.size();
     for (std::size_t i = 0; i < 3; ++i) {
       const std::array<Number, 2> slope = slopes(i);
+      steps.most[i] = Writer::kHasCentre ? Number{0} : std::numeric_limits<Number>::lowest();
       for (std::size_t s = 0; s < places.size(); ++s) {
         const Number step = static_cast<Number>(places[s].x) * slope[0] +
                             static_cast<Number>(places[s].y) * slope[1];
         steps.of_sample[s][i] = step;
-        steps.most[i] = s == 0 ? step : std::max(steps.most[i], step);
+        steps.most[i] = std::max(steps.most[i], step);
       }
     }
   }
@@ -282,23 +318,24 @@ SOFTFOCUS_INLINE void rasterize_small(const LaneTriangle& t, const VisibilityTil
     Ints e0 = row[0], e1 = row[1], e2 = row[2];
     std::size_t place = place_in_tile(tile, range.x_begin, y);
     for (int x = range.x_begin; x < range.x_end; x += kPartColumns) {
-      if constexpr (Writer::kHasSamples) {
-        if (sign_bits((e0 + steps_of.most[0]) | (e1 + steps_of.most[1]) |
-                      (e2 + steps_of.most[2])) != kAllLaneBits) {
-          writer.begin_part();
-          for (std::size_t s = 0; s < tile.layers; ++s) {
-            const auto& step = steps_of.of_sample[s];
-            const Ints own1 = e1 + step[1], own2 = e2 + step[2];
-            const Ints signs = (e0 + step[0]) | own1 | own2;
-            writer.write(x, y, place, signs >= 0, to_floats(own1 + threshold1),
-                         to_floats(own2 + threshold2), s);
-          }
-        }
-      } else {
+      if constexpr (Writer::kHasCentre) {
         const Ints signs = e0 | e1 | e2;
         if (sign_bits(signs) != kAllLaneBits) {
           writer.write(x, y, place, signs >= 0, to_floats(e1 + threshold1),
                        to_floats(e2 + threshold2));
+        }
+      }
+      if constexpr (Writer::kHasSamples) {
+        if (sign_bits((e0 + steps_of.most[0]) | (e1 + steps_of.most[1]) |
+                      (e2 + steps_of.most[2])) != kAllLaneBits) {
+          writer.begin_part();
+          for (std::size_t s = 0; s < steps_of.count; ++s) {
+            const auto& step = steps_of.of_sample[s];
+            const Ints own1 = e1 + step[1], own2 = e2 + step[2];
+            const Ints signs = (e0 + step[0]) | own1 | own2;
+            writer.write_sample(x, y, place, signs >= 0, to_floats(own1 + threshold1),
+                                to_floats(own2 + threshold2), s);
+          }
         }
       }
       place = next_part_place(place);
@@ -332,23 +369,27 @@ SOFTFOCUS_INLINE void rasterize_wide(const LaneTriangle& t, const VisibilityTile
   for (int top = range.y_begin; top < range.y_end; top += kPartRows) {
     std::array<WideLanes, 3> e = row;
     for (int left = range.x_begin; left < range.x_end; left += kPartColumns) {
-      const auto write = [&](const std::array<WideLanes, 3>& at, auto... sample) {
+      const std::size_t place = place_in_tile(tile, left, top);
+      const auto write = [&](const std::array<WideLanes, 3>& at, const auto& to) {
         const Floats e0 = narrow(at[0]), e1 = narrow(at[1]), e2 = narrow(at[2]);
         const Mask covered = (e0 >= thresholds[0]) & (e1 >= thresholds[1]) & (e2 >= thresholds[2]);
-        if (any(covered)) {
-          writer.write(left, top, place_in_tile(tile, left, top), covered, e1, e2, sample...);
-        }
+        if (any(covered)) to(covered, e1, e2);
       };
+      if constexpr (Writer::kHasCentre) {
+        write(e, [&](Mask covered, Floats e1, Floats e2) {
+          writer.write(left, top, place, covered, e1, e2);
+        });
+      }
       if constexpr (Writer::kHasSamples) {
         writer.begin_part();
-        for (std::size_t s = 0; s < tile.layers; ++s) {
+        for (std::size_t s = 0; s < steps_of.count; ++s) {
           const auto& step = steps_of.of_sample[s];
           write(
               {e[0] + wide_splat(step[0]), e[1] + wide_splat(step[1]), e[2] + wide_splat(step[2])},
-              s);
+              [&](Mask covered, Floats e1, Floats e2) {
+                writer.write_sample(left, top, place, covered, e1, e2, s);
+              });
         }
-      } else {
-        write(e);
       }
 #pragma GCC unroll 3
       for (std::size_t i = 0; i < 3; ++i) e[i] = e[i] + per_part[i];
@@ -378,7 +419,7 @@ void rasterize_huge(const LaneTriangle& t, const VisibilityTile& tile, Writer& w
       for (int part = 0; part < kBlockParts; ++part) {
         const int left = x + part * kPartColumns % kBlockSize;
         const int top = y + part * kPartColumns / kBlockSize * kPartRows;
-        const auto write = [&](const glm::ivec2& place, auto... sample) {
+        const auto write = [&](const glm::ivec2& place, const auto& to) {
           Ints covered = ~Ints{};
           std::array<Floats, 3> e{};
           for (std::size_t i = 0; i < 3; ++i) {
@@ -389,22 +430,30 @@ void rasterize_huge(const LaneTriangle& t, const VisibilityTile& tile, Writer& w
               if (value < t.thresholds[i]) covered[lane] = 0;
             }
           }
-          if (!any(covered)) return;
-          writer.write(left, top, place_in_tile(tile, left, top), covered, e[1], e[2], sample...);
+          if (any(covered)) to(covered, e[1], e[2]);
         };
+        const std::size_t at = place_in_tile(tile, left, top);
+        if constexpr (Writer::kHasCentre) {
+          write({}, [&](Mask covered, Floats e1, Floats e2) {
+            writer.write(left, top, at, covered, e1, e2);
+          });
+        }
         if constexpr (Writer::kHasSamples) {
           writer.begin_part();
-          for (std::size_t s = 0; s < tile.layers; ++s) write(writer.places[s], s);
-        } else {
-          write({});
+          const std::span<const glm::ivec2> places = places_of(tile);
+          for (std::size_t s = 0; s < places.size(); ++s) {
+            write(places[s], [&](Mask covered, Floats e1, Floats e2) {
+              writer.write_sample(left, top, at, covered, e1, e2, s);
+            });
+          }
         }
       }
     }
   }
 }
 
-// Whether barycentric depths are from 0 to 1 wherever the triangle covers: its corners' are, by more
-// than is rounded.
+// Whether barycentric depths are from 0 to 1 wherever the triangle covers: its corners' are, by
+// more than is rounded.
 SOFTFOCUS_INLINE bool lies_between_planes(const LaneTriangle& t) {
   const float a = t.depth[0], b = a + t.depth[1], c = a + t.depth[2];
   constexpr float kMargin = 0x1p-16f;
@@ -423,13 +472,12 @@ void rasterize_all(const LaneChunk& chunk, std::span<const Bin> bins, const Draw
     __builtin_prefetch(&chunk.triangles[bins[std::min(i + kAhead, bins.size() - 1)].triangle]);
     const LaneTriangle& t = chunk.triangles[bins[i].triangle];
     tile.triangles.push_back(&t);
-    Writer writer{
-        draw,
-        t,
-        tile,
-        static_cast<std::int32_t>(tile.triangles.size()),
-        {profile, splat(t.depth[0]), splat(t.depth[1]), splat(t.depth[2]), splat(t.inverse_area),
-         lies_between_planes(t)}};
+    Writer writer{draw,
+                  t,
+                  tile,
+                  static_cast<std::int32_t>(tile.triangles.size()),
+                  {profile, splat(t.depth[0]), splat(t.depth[1]), splat(t.depth[2]),
+                   splat(t.inverse_area), lies_between_planes(t)}};
     if (!t.is_large) {
       rasterize_small(t, tile, writer);
     } else if (t.large->fits_doubles) {
@@ -445,30 +493,39 @@ void rasterize_all(const LaneChunk& chunk, std::span<const Bin> bins, const Draw
 void rasterize(const LaneChunk& chunk, std::span<const Bin> bins, const DrawCall& draw,
                const Profile& profile, VisibilityTile& tile) {
   using enum DepthForm;
+  const bool is_plain = draw.depth.test == Compare::less && draw.lane_steps->keep == nullptr;
+  const bool on_planes = profile.attributes == AttributeSetup::planes_from_origin;
+  using AnySamples = SampleWriter<false, true, by_profile>;
+  using SamplesOnPlanes = SampleWriter<true, false, planes>;
+  using BarycentricSamples = SampleWriter<true, false, barycentric>;
   if (tile.has_samples) {
-    if (draw.depth.test != Compare::less || draw.lane_steps->keep != nullptr) {
-      return rasterize_all<SampleWriter<false, true, by_profile> >(chunk, bins, draw, profile,
-                                                                   tile);
-    }
-    if (profile.attributes == AttributeSetup::planes_from_origin) {
-      return rasterize_all<SampleWriter<true, false, planes> >(chunk, bins, draw, profile, tile);
-    }
-    return rasterize_all<SampleWriter<true, false, barycentric> >(chunk, bins, draw, profile, tile);
+    if (!is_plain) return rasterize_all<AnySamples>(chunk, bins, draw, profile, tile);
+    if (on_planes) return rasterize_all<SamplesOnPlanes>(chunk, bins, draw, profile, tile);
+    return rasterize_all<BarycentricSamples>(chunk, bins, draw, profile, tile);
   }
+  // With edges if the tile has them.
+  const auto with = [&]<class Centre, class Samples>(Centre*, Samples*) {
+    if (tile.edge_samples > 0) {
+      rasterize_all<EdgeWriter<Centre, Samples> >(chunk, bins, draw, profile, tile);
+    } else {
+      rasterize_all<Centre>(chunk, bins, draw, profile, tile);
+    }
+  };
+  constexpr AnySamples* kAny = nullptr;
   static_assert(kMaxLayers == 4);
   switch (tile.layers) {
-    case 2: return rasterize_all<LayerWriter<2> >(chunk, bins, draw, profile, tile);
-    case 3: return rasterize_all<LayerWriter<3> >(chunk, bins, draw, profile, tile);
-    case 4: return rasterize_all<LayerWriter<4> >(chunk, bins, draw, profile, tile);
+    case 2: return with(static_cast<LayerWriter<2>*>(nullptr), kAny);
+    case 3: return with(static_cast<LayerWriter<3>*>(nullptr), kAny);
+    case 4: return with(static_cast<LayerWriter<4>*>(nullptr), kAny);
     default: break;
   }
-  if (draw.depth.test != Compare::less || draw.lane_steps->keep != nullptr) {
-    return rasterize_all<DepthWriter<false, true, by_profile> >(chunk, bins, draw, profile, tile);
+  if (!is_plain) return with(static_cast<DepthWriter<false, true, by_profile>*>(nullptr), kAny);
+  if (on_planes) {
+    return with(static_cast<DepthWriter<true, false, planes>*>(nullptr),
+                static_cast<SamplesOnPlanes*>(nullptr));
   }
-  if (profile.attributes == AttributeSetup::planes_from_origin) {
-    return rasterize_all<DepthWriter<true, false, planes> >(chunk, bins, draw, profile, tile);
-  }
-  rasterize_all<DepthWriter<true, false, barycentric> >(chunk, bins, draw, profile, tile);
+  with(static_cast<DepthWriter<true, false, barycentric>*>(nullptr),
+       static_cast<BarycentricSamples*>(nullptr));
 }
 
 // `texels`: a row of a block, four halves a texel.

@@ -14,33 +14,18 @@
 
 namespace softfocus {
 
-void find_mixed(Isa isa, VisibilityTile& tile, bool marks_all) {
-  SOFTFOCUS_KERNEL(isa, find_mixed_in)(tile, marks_all);
-}
+void find_mixed(Isa isa, VisibilityTile& tile) { SOFTFOCUS_KERNEL(isa, find_mixed_in)(tile); }
 
-void resolve_surfaces(Isa isa, VisibilityTile& tile, const SurfaceTargets& to, glm::vec4 clear,
-                      const Profile& profile) {
-  Rectangle area = tile.area;  // of the images
-  area.y_begin -= to.y_begin;
-  area.y_end -= to.y_begin;
-  for (int y = area.y_begin; y < area.y_end; ++y) {
-    std::memset(row<std::uint8_t>(*to.coverage, y).data() + area.x_begin, 0,
-                static_cast<std::size_t>(area.x_end - area.x_begin));
-  }
-  if (!tile.mixed.empty()) {
-    Image cleared = make_image(Format::rgba16f, 1, 1);
-    store_texel(cleared, 0, 0, clear, profile);
-    std::uint64_t texel = 0;
-    std::memcpy(&texel, cleared.bytes.data(), sizeof texel);
-    SOFTFOCUS_KERNEL(isa, resolve_mixed)(tile, to, texel, profile);
-  }
-  if (to.depth == nullptr) return;
-  for (int y = area.y_begin; y < area.y_end; ++y) {
-    float* depths = row<float>(*to.depth, y).data() + area.x_begin;
-    for (int x = 0; x < area.x_end - area.x_begin; ++x) {
-      depths[x] = tile.front.depth[place_of_pixel(x, y - area.y_begin)];
-    }
-  }
+void find_edge_pixels(Isa isa, VisibilityTile& tile) { SOFTFOCUS_KERNEL(isa, find_edges_in)(tile); }
+
+void store_edges(Isa isa, const VisibilityTile& tile, const EdgeTargets& to, glm::vec4 clear,
+                 const Profile& profile) {
+  if (tile.mixed.empty()) return;
+  Image cleared = make_image(Format::rgba16f, 1, 1);
+  store_texel(cleared, 0, 0, clear, profile);
+  std::uint64_t texel = 0;
+  std::memcpy(&texel, cleared.bytes.data(), sizeof texel);
+  SOFTFOCUS_KERNEL(isa, store_edges_of)(tile, to, texel, profile);
 }
 
 }  // namespace softfocus
@@ -49,10 +34,24 @@ void resolve_surfaces(Isa isa, VisibilityTile& tile, const SurfaceTargets& to, g
 
 #include "raster/pipeline/lanes/block_lanes.inl"
 
-void find_mixed_in(VisibilityTile& tile, bool marks_all) {
-  tile.mixed.clear();
+namespace {
+
+// Appends the places of a part's pixels that are in the mask and in the tile's area.
+SOFTFOCUS_INLINE void append_mixed(std::uint32_t place, Mask mixed, VisibilityTile& tile) {
   const int width = tile.area.x_end - tile.area.x_begin;
   const int height = tile.area.y_end - tile.area.y_begin;
+  const glm::ivec2 first = pixel_of_place(place);
+  mixed &= (first.x + lane_x() < width) & (first.y + lane_y() < height);
+  for (unsigned rest = lane_bits(mixed); rest != 0; rest &= rest - 1) {
+    tile.mixed.push_back(
+        static_cast<std::uint16_t>(place + static_cast<unsigned>(std::countr_zero(rest))));
+  }
+}
+
+}  // namespace
+
+void find_mixed_in(VisibilityTile& tile) {
+  tile.mixed.clear();
   for (std::uint32_t place = 0; place < kTilePixels; place += kLanes) {
     std::array<Ints, kMaxSamples> ids;
     ids[0] = load(&tile.front.ids[place]);
@@ -62,7 +61,6 @@ void find_mixed_in(VisibilityTile& tile, bool marks_all) {
       mixed |= ~(ids[s] == ids[0]);
     }
     if (!any(mixed)) {
-      if (!marks_all) continue;
       const Ints as_first = select(ids[0] > 0, splat(-1), Ints{});
       for (std::size_t s = 1; s < tile.layers; ++s) store(&tile.layer(s).ids[place], as_first);
       continue;
@@ -75,74 +73,75 @@ void find_mixed_in(VisibilityTile& tile, bool marks_all) {
       }
       store(&tile.layer(s).ids[place], marked);
     }
-    const glm::ivec2 first = pixel_of_place(place);
-    mixed &= (first.x + lane_x() < width) & (first.y + lane_y() < height);
-    for (unsigned rest = lane_bits(mixed); rest != 0; rest &= rest - 1) {
-      tile.mixed.push_back(
-          static_cast<std::uint16_t>(place + static_cast<unsigned>(std::countr_zero(rest))));
+    append_mixed(place, mixed, tile);
+  }
+}
+
+void find_edges_in(VisibilityTile& tile) {
+  tile.mixed.clear();
+  for (std::uint32_t place = 0; place < kTilePixels; place += kLanes) {
+    const Ints centre = load(&tile.front.ids[place]);
+    Mask mixed{};
+    for (std::size_t s = 0; s < tile.edge_samples; ++s) {
+      mixed |= ~(load(&tile.layer(tile.layers + s).ids[place]) == centre);
     }
+    if (any(mixed)) append_mixed(place, mixed, tile);
   }
 }
 
 namespace {
 
-/// As PixelSurfaces.
-struct SurfaceLanes {
-  std::array<Floats, 4> texel, other;
-  Ints other_samples, first;
+using Colours = std::array<Floats, 4>;
+
+/// As OtherSurface.
+struct OtherLanes {
+  Colours texel;
+  Ints samples{};
 };
 
-struct GroupLanes {
-  std::array<Floats, 4> sum;
-  Ints count{}, first{};
-
-  SOFTFOCUS_INLINE GroupLanes() { sum.fill(splat(-0.0f)); }
-  SOFTFOCUS_INLINE void add(const std::array<Floats, 4>& sample, Mask here, int number) {
-    first = select(here & (count == 0), splat(number), first);
-    for (std::size_t k = 0; k < 4; ++k) sum[k] = select(here, sum[k] + sample[k], sum[k]);
-    count -= here;
-  }
-};
-
-SOFTFOCUS_INLINE SurfaceLanes
-surface_lanes(const std::array<std::array<Floats, 4>, kMaxSamples>& of, std::size_t samples) {
-  Floats nearest = of[0][3], farthest = of[0][3];
-  for (std::size_t s = 1; s < samples; ++s) {
-    nearest = select(of[s][3] < nearest, of[s][3], nearest);
-    farthest = select(farthest < of[s][3], of[s][3], farthest);
-  }
-  const Mask is_one = farthest <= nearest * kOneSurface;
-  const Floats border = 2.0f / (1.0f / nearest + 1.0f / farthest);
-  GroupLanes near_group, far_group;
+// other_surface() of the samples that are `present`, of kLanes pixels.
+SOFTFOCUS_INLINE OtherLanes other_lanes(Floats centre_depth,
+                                        const std::array<Colours, kMaxSamples>& of,
+                                        const std::array<Mask, kMaxSamples>& present,
+                                        std::size_t samples) {
+  const Floats centre = 1.0f / centre_depth;
+  Floats farthest = centre;
+  Mask is_one = ~Mask{};
   for (std::size_t s = 0; s < samples; ++s) {
-    const Mask is_near = is_one | (of[s][3] < border);
-    near_group.add(of[s], is_near, static_cast<int>(s));
-    far_group.add(of[s], ~is_near, static_cast<int>(s));
+    const Floats inverse = 1.0f / of[s][3];
+    const Mask is_farther = present[s] & (absolute(inverse - centre) > absolute(farthest - centre));
+    farthest = select(is_farther, inverse, farthest);
+    is_one &= ~present[s] |
+              ((of[s][3] <= centre_depth * kOneSurface) & (centre_depth <= of[s][3] * kOneSurface));
   }
-  const Mask shows_near = near_group.count >= far_group.count;
-  const Floats near_share = 1.0f / to_floats(near_group.count);
-  const Floats far_share = 1.0f / to_floats(far_group.count);
-  SurfaceLanes surfaces;
-  for (std::size_t k = 0; k < 4; ++k) {
-    const Floats near_mean = near_group.sum[k] * near_share;
-    const Floats far_mean = far_group.sum[k] * far_share;
-    surfaces.texel[k] = select(shows_near, near_mean, far_mean);
-    surfaces.other[k] = select(shows_near, far_mean, near_mean);
+  const Floats border = 0.5f * (centre + farthest);
+  const Mask is_beyond = farthest > centre;
+  std::array<Mask, kMaxSamples> is_other;
+  for (std::size_t s = 0; s < samples; ++s) {
+    const Floats inverse = 1.0f / of[s][3];
+    is_other[s] = present[s] &
+                  (is_one | (is_beyond & (inverse > border)) | (~is_beyond & (inverse <= border)));
   }
-  surfaces.other_samples = select(shows_near, far_group.count, near_group.count);
-  surfaces.first = select(shows_near, near_group.first, far_group.first);
-  return surfaces;
+  OtherLanes other;
+  other.texel.fill(Floats{});
+  Ints most{};
+  for (std::size_t s = 0; s < samples; ++s) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      other.texel[k] = select(is_other[s], other.texel[k] + of[s][k], other.texel[k]);
+    }
+    other.samples -= is_other[s];
+    Ints alike{};
+    for (std::size_t r = 0; r < samples; ++r) alike -= is_other[r] & (of[r][3] == of[s][3]);
+    const Mask is_first = is_other[s] & (alike > most);
+    other.texel[3] = select(is_first, of[s][3], other.texel[3]);
+    most = select(is_first, alike, most);
+  }
+  const Floats share = 1.0f / to_floats(other.samples);
+  for (std::size_t k = 0; k < 3; ++k) other.texel[k] *= share;
+  return other;
 }
 
 using Texels = std::array<std::uint64_t, kLanes>;
-
-// Of a sample's texels in the tile's memory.
-SOFTFOCUS_INLINE std::uint64_t texel_in(const std::byte* texels, const glm::ivec2& at) {
-  std::uint64_t texel = 0;
-  std::memcpy(&texel, texels + static_cast<std::size_t>(at.y * kTileSize + at.x) * sizeof texel,
-              sizeof texel);
-  return texel;
-}
 
 SOFTFOCUS_INLINE void to_texels(const std::array<Floats, 4>& colour, HalfRounding rounding,
                                 Texels& texels) {
@@ -166,52 +165,55 @@ SOFTFOCUS_INLINE void to_texels(const std::array<Floats, 4>& colour, HalfRoundin
 
 }  // namespace
 
-void resolve_mixed(VisibilityTile& tile, const SurfaceTargets& to, std::uint64_t cleared,
-                   const Profile& profile) {
-  const Rectangle& area = tile.area;
+void store_edges_of(const VisibilityTile& tile, const EdgeTargets& to, std::uint64_t cleared,
+                    const Profile& profile) {
   alignas(64) std::array<Texels, kMaxSamples> texels;
-  alignas(64) Texels shown, other;
-  std::array<std::array<Floats, 4>, kMaxSamples> colours;
+  alignas(64) std::array<std::array<std::int32_t, kLanes>, kMaxSamples> present;
+  alignas(64) Texels centre, other;
+  alignas(64) std::array<std::int32_t, kLanes> counts;
+  std::array<Colours, kMaxSamples> colours;
+  std::array<Mask, kMaxSamples> masks;
   for (std::size_t begin = 0; begin < tile.mixed.size(); begin += kLanes) {
-    const std::size_t count = std::min<std::size_t>(kLanes, tile.mixed.size() - begin);
-    for (std::size_t s = 0; s < tile.layers; ++s) {
-      const TileLayer& layer = tile.layer(s);
+    const std::size_t lanes = std::min<std::size_t>(kLanes, tile.mixed.size() - begin);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::uint16_t place = tile.mixed[begin + std::min(lane, lanes - 1)];
+      std::memcpy(&centre[lane], texel_at(tile.front, pixel_of_place(place)), sizeof centre[lane]);
+    }
+    for (std::size_t s = 0; s < tile.edge_samples; ++s) {
+      const TileLayer& layer = tile.layer(tile.layers + s);
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        const std::uint16_t place = tile.mixed[begin + std::min(lane, count - 1)];
+        const std::uint16_t place = tile.mixed[begin + std::min(lane, lanes - 1)];
         const std::int32_t id = layer.ids[place];
-        if (s == 0 && id < 0) {
-          texels[s][lane] = texel_in(tile.sample_texels.get(), pixel_of_place(place));
-        } else if (id <= 0) {
-          texels[s][lane] = id == 0 ? cleared : texels[static_cast<std::size_t>(-1 - id)][lane];
+        present[s][lane] = id != -1 ? -1 : 0;
+        std::uint64_t& texel = texels[s][lane];
+        if (id > 0) {
+          std::memcpy(&texel, texel_at(layer, pixel_of_place(place)), sizeof texel);
+        } else if (id < -1) {
+          texel = texels[static_cast<std::size_t>(-2 - id)][lane];
         } else {
-          std::memcpy(&texels[s][lane], texel_at(layer, pixel_of_place(place)),
-                      sizeof texels[s][lane]);
+          texel = cleared;
         }
       }
       const HalfTexels halves =
           load_half_texels(reinterpret_cast<const std::uint16_t*>(texels[s].data()));
       colours[s] = {half_to_float(halves.r), half_to_float(halves.g), half_to_float(halves.b),
                     half_to_float(halves.a)};
+      masks[s] = load(present[s].data()) != 0;
     }
-    const SurfaceLanes surfaces = surface_lanes(colours, tile.layers);
-    to_texels(surfaces.texel, profile.half_store, shown);
-    to_texels(surfaces.other, profile.half_store, other);
-    alignas(64) std::array<std::int32_t, kLanes> other_samples, first;
-    store(other_samples.data(), surfaces.other_samples);
-    store(first.data(), surfaces.first);
-    for (std::size_t lane = 0; lane < count; ++lane) {
-      const std::uint16_t place = tile.mixed[begin + lane];
-      const glm::ivec2 at = pixel_of_place(place);
-      std::memcpy(texel_at(tile.front, at), &shown[lane], sizeof shown[lane]);
-      if (first[lane] > 0) {
-        tile.front.depth[place] = tile.layer(static_cast<std::size_t>(first[lane])).depth[place];
-      }
-      if (other_samples[lane] == 0) continue;
-      const auto x = static_cast<std::size_t>(area.x_begin + at.x);
-      const int y = area.y_begin + at.y - to.y_begin;
+    const HalfTexels halves =
+        load_half_texels(reinterpret_cast<const std::uint16_t*>(centre.data()));
+    const OtherLanes found =
+        other_lanes(half_to_float(halves.a), colours, masks, tile.edge_samples);
+    to_texels(found.texel, profile.half_store, other);
+    store(counts.data(), found.samples);
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      if (counts[lane] == 0) continue;
+      const glm::ivec2 at = pixel_of_place(tile.mixed[begin + lane]);
+      const auto x = static_cast<std::size_t>(tile.area.x_begin + at.x);
+      const int y = tile.area.y_begin + at.y - to.y_begin;
       std::memcpy(&row<std::uint16_t>(*to.other, y)[4 * x], &other[lane], sizeof other[lane]);
       row<std::uint8_t>(*to.coverage, y)[x] =
-          coverage_byte(other_samples[lane], static_cast<int>(tile.layers));
+          coverage_byte(counts[lane], static_cast<int>(tile.edge_samples));
     }
   }
 }

@@ -10,14 +10,17 @@
 
 namespace softfocus {
 
-/// Finds the pixels whose samples do not all show the same, and marks samples that show what one
-/// before them does: of those pixels, or of all. Needs an isa with vectors.
-void find_mixed(Isa isa, VisibilityTile& tile, bool marks_all);
+/// Of a tile of several samples a pixel: finds the pixels whose samples do not all show the same,
+/// and marks samples that show what one before them does. Needs an isa with vectors.
+void find_mixed(Isa isa, VisibilityTile& tile);
 
-/// Of a tile that is shaded, whose first samples went to the picture: replaces mixed pixels by
-/// their surfaces, as find_surfaces(), and sets the coverage of all. `clear` is what samples
-/// without a triangle show. Needs an isa with vectors.
-void resolve_surfaces(Isa isa, VisibilityTile& tile, const SurfaceTargets& to, glm::vec4 clear,
-                      const Profile& profile);
+/// Finds the pixels of a tile with edges whose samples show other triangles than their centre.
+/// Needs an isa with vectors.
+void find_edge_pixels(Isa isa, VisibilityTile& tile);
+
+/// Stores the edges of a tile that is shaded. `clear` is what samples without a triangle show.
+/// Needs an isa with vectors.
+void store_edges(Isa isa, const VisibilityTile& tile, const EdgeTargets& to, glm::vec4 clear,
+                 const Profile& profile);
 
 }  // namespace softfocus

@@ -110,7 +110,7 @@ inline constexpr int kQuadsAhead = 3;
 struct SeenQuads {
   static constexpr std::size_t kRoom = kTilePixels + (kQuadsAhead + 1) * kLanes;
   std::array<std::uint32_t, kRoom> entries;
-  // Of FurtherQuad: where its sample's texels are, in bytes from sample 1's, and its shift.
+  // Of FurtherQuad: where its sample's texels are, in bytes from sample 0's, and its shift.
   std::array<std::int32_t, kRoom> sample_offsets, shifts;
   int count = 0;
 };
@@ -193,10 +193,16 @@ SOFTFOCUS_INLINE void fill_up(SeenQuads& seen) {
   fill_up(seen);
 }
 
+// The layer of sample 0 of further quads.
+SOFTFOCUS_INLINE std::size_t first_further(const VisibilityTile& tile) {
+  return tile.has_samples ? 0 : tile.layers;
+}
+
 // Takes as many of a run's further quads as there is room for. Returns how many.
 [[gnu::noinline]] inline std::size_t take_further(const VisibilityTile& tile, const VisibleRun& run,
                                                   std::size_t from, SeenQuads& seen) {
   const std::size_t count = std::min<std::size_t>(run.further_end - from, kTilePixels);
+  const std::byte* first_texels = tile.layer(first_further(tile)).texels;
   for (std::size_t i = 0; i < count; ++i) {
     const FurtherQuad& quad = tile.further[from + i];
     const std::uint32_t block = quad.number / 4u;
@@ -205,9 +211,8 @@ SOFTFOCUS_INLINE void fill_up(SeenQuads& seen) {
     const auto triangle = static_cast<std::uint32_t>(quad.id - run.first_id);
     seen.entries[i] =
         ((triangle << kQuadBits | row << kColumnBits | column) << kQuadPixels) + quad.pixels;
-    // Layer by layer, as the samples of an image and of a tile lie.
-    const std::ptrdiff_t layer_bytes = tile.layer(2).texels - tile.layer(1).texels;
-    seen.sample_offsets[i] = static_cast<std::int32_t>((quad.sample - 1) * layer_bytes);
+    seen.sample_offsets[i] = static_cast<std::int32_t>(
+        tile.layer(first_further(tile) + quad.sample).texels - first_texels);
     seen.shifts[i] = quad.shift;
   }
   const auto end = static_cast<std::ptrdiff_t>(count);
@@ -281,7 +286,7 @@ template <class Stage>
   batch.fill_up();
   std::array<std::array<Floats, 4>, 8> colours;
   stage.shade(batch, colours.data());
-  std::byte* first = tile.layer(job.layer).texels;
+  std::byte* first = tile.layer(job.layer == kFurther ? first_further(tile) : job.layer).texels;
   for (int vector = 0; vector < batch.vectors(); ++vector) {
     store_colours(colours[static_cast<std::size_t>(vector)], job.profile->half_store, first,
                   &batch.offsets[static_cast<std::size_t>(vector * kLanes)]);
@@ -305,8 +310,8 @@ constexpr std::size_t usual_varyings() {
 template <class Interpolator, class Stage>
 void shade_quads(const Stage& stage, const FragmentJob& job, const VisibilityTile& tile,
                  const VisibleRun& run, const SeenQuads& seen) {
-  const TileLayer& layer = tile.layer(job.layer);
-  const bool is_further = job.samples > 1 && job.layer > 0;
+  const bool is_further = job.layer == kFurther;
+  const TileLayer& layer = tile.layer(is_further ? first_further(tile) : job.layer);
   const LaneTriangle* const* triangles =
       &tile.triangles[static_cast<std::size_t>(run.first_id - 1)];
   constexpr int kTexelBytes = sizeof(std::uint64_t);
@@ -372,7 +377,7 @@ template <class Interpolator, class Stage>
 void shade_seen(const Stage& stage, const FragmentJob& job, const VisibilityTile& tile,
                 const VisibleRun& run) {
   SeenQuads seen;
-  if (job.samples == 1 || job.layer == 0) {
+  if (job.layer != kFurther) {
     list_seen(tile, tile.layer(job.layer), run, seen);
     shade_quads<Interpolator>(stage, job, tile, run, seen);
     return;

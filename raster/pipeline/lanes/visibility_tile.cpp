@@ -5,6 +5,7 @@
 #include <cstring>
 #include <utility>
 
+#include "raster/pipeline/lanes/draw_in_lanes.h"
 #include "raster/pipeline/multisample.h"
 
 namespace softfocus {
@@ -58,7 +59,7 @@ std::span<float> depth_row(const RenderTargets& targets, std::size_t layer, int 
 
 // No triangle yet: what the layers show is to be cleared, or to be kept.
 void show_none(VisibilityTile& tile, bool cleared) {
-  for (std::size_t i = 0; i < tile.layers; ++i) {
+  for (std::size_t i = 0; i < tile.layers + tile.edge_samples; ++i) {
     const bool keeps = tile.layers > 1 && !tile.has_samples && !cleared;
     fill(tile.layer(i).ids, keeps ? -1 - static_cast<std::int32_t>(i) : 0);
   }
@@ -71,13 +72,18 @@ void show_none(VisibilityTile& tile, bool cleared) {
 void forget_seen(VisibilityTile& tile) { show_none(tile, false); }
 
 void begin_tile(VisibilityTile& tile, const Rectangle& area, const RenderTargets& targets,
-                std::optional<float> clear_depth) {
+                std::optional<float> clear_depth, int edge_samples) {
   tile.area = area;
   tile.has_samples = targets.samples > 1;
   tile.layers = tile.has_samples ? static_cast<std::size_t>(targets.samples) : layer_count(targets);
-  if (tile.layers > tile.behind_room + 1) {
-    tile.behind_room = tile.layers - 1;
+  tile.edge_samples = static_cast<std::size_t>(edge_samples);
+  const std::size_t layers = tile.layers + tile.edge_samples;
+  if (layers > tile.behind_room + 1) {
+    tile.behind_room = layers - 1;
     tile.behind.reset(new TileLayer[tile.behind_room]);
+  }
+  for (std::size_t s = 0; s < tile.edge_samples; ++s) {
+    fill(tile.layer(tile.layers + s).depth, *clear_depth);
   }
   show_none(tile, clear_depth.has_value());
   for (std::size_t i = 0; i < tile.layers; ++i) {
@@ -151,20 +157,6 @@ const LaneTriangle& triangle_of(const VisibilityTile& tile, std::int32_t id) {
   return *tile.triangles[static_cast<std::size_t>(id - 1)];
 }
 
-bool covers_centre(const LaneTriangle& t, int x, int y) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    std::int64_t value = 0;
-    if (t.large != nullptr) {
-      value = edge_at(t.large->exact.edges[i], x, y);
-    } else {
-      value = t.edge[i] + std::int64_t{slope_x(t.slopes[i])} * (x - t.bounds[0]) +
-              std::int64_t{slope_y(t.slopes[i])} * (y - t.bounds[1]);
-    }
-    if (value < t.thresholds[i]) return false;
-  }
-  return true;
-}
-
 // Which triangles of a tile share a corner.
 class JoinedTriangles {
  public:
@@ -189,90 +181,70 @@ class JoinedTriangles {
   std::array<Pair, 256> known_{};
 };
 
-// Samples of a pixel, a bit each, that show one surface, and what shades it.
-struct PixelSurface {
-  unsigned samples = 0;
-  std::int32_t id = 0;
-  std::int32_t shift = 0;
-};
-
-PixelSurface shaded_surface(const VisibilityTile& tile, const glm::ivec2& at,
-                            std::span<const std::int32_t> ids, unsigned samples) {
-  PixelSurface surface{samples};
+// What shades the samples, a bit each, of a pixel that show one surface.
+FurtherQuad shaded_surface(std::uint16_t place, std::span<const std::int32_t> ids,
+                           unsigned samples) {
+  const std::span<const glm::ivec2> places = sample_places(static_cast<int>(ids.size()));
+  FurtherQuad quad{0, static_cast<std::uint16_t>(place / kQuadPixels),
+                   static_cast<std::uint8_t>(1u << place % kQuadPixels),
+                   static_cast<std::uint8_t>(std::countr_zero(samples)), 0};
   int most = 0;
-  glm::ivec2 sum{};
   for (unsigned rest = samples; rest != 0;) {
     const std::int32_t id = ids[static_cast<std::size_t>(std::countr_zero(rest))];
-    if (covers_centre(triangle_of(tile, id), tile.area.x_begin + at.x, tile.area.y_begin + at.y)) {
-      return {samples, id, 0};
-    }
     int count = 0;
-    glm::ivec2 of_id{};
-    const std::span<const glm::ivec2> places = sample_places(static_cast<int>(ids.size()));
+    glm::ivec2 sum{};
     for (std::size_t s = 0; s < ids.size(); ++s) {
       if ((rest >> s & 1u) == 0 || ids[s] != id) continue;
       rest &= ~(1u << s);
-      of_id += places[s];
+      sum += places[s];
       ++count;
     }
     if (count <= most) continue;
     most = count;
-    sum = of_id;
-    surface.id = id;
+    quad.id = id;
+    quad.shift = packed_pixel(sum.x / count, sum.y / count);
   }
-  surface.shift = packed_pixel(sum.x / most, sum.y / most);
-  return surface;
+  return quad;
 }
 
 }  // namespace
 
-void list_surfaces(VisibilityTile& tile) {
+void list_edges(VisibilityTile& tile) {
   JoinedTriangles joined{tile};
   std::vector<FurtherQuad> quads;
   std::size_t kept = 0;
   std::array<std::int32_t, kMaxSamples> all{};
+  const std::span ids = std::span{all}.first(tile.edge_samples);
+  const auto is_one = [&](std::int32_t a, std::int32_t b) {
+    return a == b || (a > 0 && b > 0 && joined.are_joined(a, b));
+  };
   for (const std::uint16_t place : tile.mixed) {
-    for (std::size_t s = 0; s < tile.layers; ++s) {
-      const std::int32_t id = tile.layer(s).ids[place];
-      all[s] = id < 0 ? all[static_cast<std::size_t>(-1 - id)] : id;
+    const std::int32_t centre = tile.front.ids[place];
+    unsigned rest = 0;
+    for (std::size_t s = 0; s < ids.size(); ++s) {
+      std::int32_t& id = tile.layer(tile.layers + s).ids[place];
+      ids[s] = id;
+      if (is_one(centre, id)) {
+        id = -1;
+      } else {
+        rest |= 1u << s;
+      }
     }
-    const std::span ids = std::span{all}.first(tile.layers);
-    const glm::ivec2 at = pixel_of_place(place);
-    unsigned rest = (1u << tile.layers) - 1;
-    bool is_mixed = false;
+    if (rest == 0) continue;
+    tile.mixed[kept++] = place;
     while (rest != 0) {
       const auto first = static_cast<std::size_t>(std::countr_zero(rest));
       unsigned samples = 0;
       for (std::size_t s = first; s < ids.size(); ++s) {
-        if ((rest >> s & 1u) == 0) continue;
-        const bool same = ids[s] == ids[first] ||
-                          (ids[s] > 0 && ids[first] > 0 && joined.are_joined(ids[first], ids[s]));
-        if (same) samples |= 1u << s;
+        if ((rest >> s & 1u) == 0 || !is_one(ids[first], ids[s])) continue;
+        samples |= 1u << s;
+        if (s > first && ids[first] != 0) {
+          tile.layer(tile.layers + s).ids[place] = -2 - static_cast<std::int32_t>(first);
+        }
       }
       rest &= ~samples;
-      is_mixed |= rest != 0 || first != 0;
-      const auto mark = [&](std::int32_t id) {
-        for (std::size_t s = first + 1; s < ids.size(); ++s) {
-          if ((samples >> s & 1u) != 0) tile.layer(s).ids[place] = id;
-        }
-      };
-      if (ids[first] == 0) {
-        mark(0);
-        continue;
-      }
-      const PixelSurface surface = shaded_surface(tile, at, ids, samples);
-      mark(-1 - static_cast<std::int32_t>(first));
-      if (first == 0 && surface.shift == 0) {
-        tile.front.ids[place] = surface.id;
-        continue;
-      }
-      is_mixed = true;
-      if (first == 0) tile.front.ids[place] = -1;
-      quads.push_back({surface.id, static_cast<std::uint16_t>(place / kQuadPixels),
-                       static_cast<std::uint8_t>(1u << place % kQuadPixels),
-                       static_cast<std::uint8_t>(first), surface.shift});
+      if (ids[first] != 0) quads.push_back(shaded_surface(place, ids, samples));
     }
-    if (is_mixed) tile.mixed[kept++] = place;
   }
   tile.mixed.resize(kept);
   sort_further(tile, quads);
@@ -321,21 +293,16 @@ void copy_to_samples(const VisibilityTile& tile) {
 }
 
 void shade_tile(const VisibilityTile& tile) {
-  if (tile.has_samples) {
-    for (const VisibleRun& run : tile.runs) {
-      const void* recorded = run.draw->recorded.get();
-      run.draw->lane_steps->shade_seen(recorded, tile, 0, run);
-      if (run.further_begin < run.further_end) {
-        run.draw->lane_steps->shade_seen(recorded, tile, 1, run);
-      }
-    }
-    return;
-  }
-  for (std::size_t i = tile.layers; i-- > 0;) {
+  // Of several samples the first layer has what all pixels show.
+  for (std::size_t i = tile.has_samples ? 1 : tile.layers; i-- > 0;) {
     if (i > 0) move_back(tile, i);
     for (const VisibleRun& run : tile.runs) {
       run.draw->lane_steps->shade_seen(run.draw->recorded.get(), tile, i, run);
     }
+  }
+  for (const VisibleRun& run : tile.runs) {
+    if (run.further_begin == run.further_end) continue;
+    run.draw->lane_steps->shade_seen(run.draw->recorded.get(), tile, kFurther, run);
   }
 }
 

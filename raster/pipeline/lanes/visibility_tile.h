@@ -62,7 +62,8 @@ struct FurtherQuad {
 
 /// Depths, and the number of the triangle that each pixel shows, from 1 on. 0: none, so it is to
 /// be cleared. In a pass that peels, -1 - i: what layer i showed before this tile began. Of several
-/// samples, once find_mixed() has run, -1 - i: what sample i shows.
+/// samples, once find_mixed() has run, -1 - i: what sample i shows. Of a sample of an edge, once
+/// list_edges() has run: -1: the centre's surface; -2 - i: what sample i of the edge shows.
 struct TileLayer {
   alignas(64) std::array<float, kTilePixels> depth;
   alignas(64) std::array<std::int32_t, kTilePixels> ids;
@@ -82,41 +83,40 @@ struct VisibilityTile {
   Rectangle area;          ///< in the target; x_begin and y_begin are multiples of kTileSize
   std::size_t layers = 1;  ///< those that a pass peels, or a pixel's samples
   bool has_samples = false;
+  /// Of edges: so many layers follow those above, a sample each.
+  std::size_t edge_samples = 0;
   TileLayer front;
   std::unique_ptr<TileLayer[]> behind;  ///< made on first use
   std::size_t behind_room = 0;
   std::vector<const LaneTriangle*> triangles;  ///< by id - 1
   std::vector<VisibleRun> runs;
   std::vector<FurtherQuad> further;  ///< run by run
-  std::vector<std::uint16_t> mixed;  ///< places of pixels whose samples do not all show the same
-  /// Texels of all samples, sample by sample in rows, if no image has them; of sample 0 those that
-  /// are further.
-  std::unique_ptr<std::byte[]> sample_texels;
-  std::size_t sample_texels_room = 0;
+  std::vector<std::uint16_t> mixed;  ///< places of pixels that do not show one surface
+  /// Texels of edges' samples, sample by sample in rows.
+  std::unique_ptr<std::byte[]> edge_texels;
+  std::size_t edge_texels_room = 0;
 
   TileLayer& layer(std::size_t i) { return i == 0 ? front : behind[i - 1]; }
   const TileLayer& layer(std::size_t i) const { return i == 0 ? front : behind[i - 1]; }
 };
 
 /// Begins a tile that shows nothing, at `clear_depth` or, without one, at the buffers' depths.
-/// `texels` of its layers are left to be set.
+/// Edges need a `clear_depth`. `texels` of its layers are left to be set.
 void begin_tile(VisibilityTile& tile, const Rectangle& area, const RenderTargets& targets,
-                std::optional<float> clear_depth);
+                std::optional<float> clear_depth, int edge_samples = 0);
 /// Shades what the tile shows, the farthest layer first, draw by draw. Of several samples needs
 /// find_mixed() and list_further().
 void shade_tile(const VisibilityTile& tile);
 /// Lists, for each run, what samples but the first show that no sample before them does. Needs
-/// find_mixed() (rasterize_lanes.h).
+/// find_mixed() (resolve_lanes.h).
 void list_further(VisibilityTile& tile);
 
-/// The same for pixels' surfaces (resolve_lanes.h). Samples of a pixel whose triangles share a corner,
-/// and face the same way, show one surface, which goes on from triangle to triangle. It is shaded
-/// once: by the triangle that covers the pixel's centre, or else by that which most of the samples
-/// show, the first of these, at the mean of their places. So nothing is extrapolated beyond a
-/// triangle, which of slivers leads far away. `mixed` are left the pixels of several surfaces, and
-/// those that are not shaded at their centre. Of these sample 0 is further too, if its surface is not
-/// shaded at the centre; then `ids` has -1.
-void list_surfaces(VisibilityTile& tile);
+/// Lists, for each run, the surfaces of edges besides their pixels' centres'; `mixed` are left the
+/// pixels that have such. Triangles that share a corner, and face the same way, are one surface,
+/// which goes on from the one to the other. Samples of a pixel that show one are shaded once: by
+/// the triangle that most of them show, the first of these, at the mean of their places. So nothing
+/// is extrapolated beyond a triangle, which of slivers leads far away.
+void list_edges(VisibilityTile& tile);
 /// Gives samples that show what another one does its texel.
 void copy_to_samples(const VisibilityTile& tile);
 /// Forgets the triangles and keeps the depths.
