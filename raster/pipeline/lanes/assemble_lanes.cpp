@@ -140,12 +140,7 @@ SOFTFOCUS_INLINE void copy_triangle(const TriangleColumns& columns, std::size_t 
     t.thresholds[i] = static_cast<std::int8_t>(columns.threshold[i][lane]);
     const auto vertex = static_cast<std::size_t>(columns.index[i][lane]);
     t.vertices[i] = job.vertices.rows + vertex * job.vertices.stride;
-    // Chunks share vertices, and threads take chunks. clang's library has no std::atomic_ref.
-#ifdef __wasm__
-    // Its only atomic store is the strictest one; most vertices are marked already.
-    if (__atomic_load_n(&job.vertices.used[vertex], __ATOMIC_RELAXED) != 0) continue;
-#endif
-    __atomic_store_n(&job.vertices.used[vertex], std::uint8_t{1}, __ATOMIC_RELAXED);
+    mark_used(job.vertices, vertex);
   }
 #pragma GCC unroll 4
   for (std::size_t i = 0; i < 4; ++i) {

@@ -63,7 +63,8 @@ void assemble_chunk(const LaneDraw& draw, std::uint32_t number, LaneChunk& chunk
   bin_triangles(chunk, (draw.target.x_end + kTileSize - 1) / kTileSize);
 }
 
-void add_triangle(const LaneDraw& draw, LaneChunk& chunk, const std::array<WindowVertex, 3>& window,
+void add_triangle(const LaneDraw& draw, LaneChunk& chunk, std::size_t number,
+                  const std::array<WindowVertex, 3>& window,
                   const std::array<std::span<const float>, 3>& varyings, bool cull_unsnapped) {
   const DrawState& state = draw.state;
   if (cull_unsnapped && is_culled_unsnapped(window, state.cull, state.front_face)) return;
@@ -71,7 +72,16 @@ void add_triangle(const LaneDraw& draw, LaneChunk& chunk, const std::array<Windo
                                      draw.profile, draw.samples, draw.edge_samples);
   if (!setup) return;
   LaneTriangle& t = add_set_up_triangle(chunk, *setup, provoking_index(state), draw.profile);
+  const auto indices = draw.indices.subspan(3 * number, 3);
+  const bool is_whole = std::all_of(indices.begin(), indices.end(), [&](std::uint32_t index) {
+    return draw.store.codes[index] == 0;
+  });
   for (std::size_t i = 0; i < 3; ++i) {
+    if (is_whole) {
+      t.vertices[i] = draw.store.rows + indices[i] * draw.store.stride;
+      mark_used(draw.store, indices[i]);
+      continue;
+    }
     auto& row = chunk.new_vertices.emplace_back();
     row[kVertexX] = window[i].x;
     row[kVertexY] = window[i].y;

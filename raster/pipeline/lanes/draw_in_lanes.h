@@ -77,8 +77,10 @@ using AddSlowly = void (*)(const AssembleJob& job, LaneChunk& chunk, std::size_t
 void assemble_chunk(const LaneDraw& draw, std::uint32_t number, LaneChunk& chunk,
                     AddSlowly add_slowly, const void* context);
 
-// Sets up one triangle by the scalar functions and appends it.
-void add_triangle(const LaneDraw& draw, LaneChunk& chunk, const std::array<WindowVertex, 3>& window,
+// Sets up one triangle by the scalar functions and appends it. Triangle `number` of the draw has
+// the draw's own vertices unless it is clipped.
+void add_triangle(const LaneDraw& draw, LaneChunk& chunk, std::size_t number,
+                  const std::array<WindowVertex, 3>& window,
                   const std::array<std::span<const float>, 3>& varyings, bool cull_unsnapped);
 
 void record(RenderPass& pass, std::shared_ptr<void> recorded, const LaneSteps& steps,
@@ -106,7 +108,8 @@ struct RecordedInLanes {
         corners, kInterpolation, draw.state.provoking_vertex, draw.target, draw.profile,
         [&](const std::array<WindowVertex, 3>& window, const std::array<Varyings<N>, 3>& varyings) {
           const auto used = [&](std::size_t i) { return std::span{varyings[i]}.first(count); };
-          add_triangle(draw, chunk, window, {used(0), used(1), used(2)}, job.cull_unsnapped);
+          add_triangle(draw, chunk, triangle, window, {used(0), used(1), used(2)},
+                       job.cull_unsnapped);
         });
   }
 

@@ -47,6 +47,15 @@ struct VertexStore {
   std::uint8_t* used = nullptr;  ///< 1: the row is wanted; else 0
 };
 
+/// Chunks share vertices, and threads take chunks. clang's library has no std::atomic_ref.
+inline void mark_used(const VertexStore& vertices, std::size_t vertex) {
+#ifdef __wasm__
+  // Its only atomic store is the strictest one; most vertices are marked already.
+  if (__atomic_load_n(&vertices.used[vertex], __ATOMIC_RELAXED) != 0) return;
+#endif
+  __atomic_store_n(&vertices.used[vertex], std::uint8_t{1}, __ATOMIC_RELAXED);
+}
+
 /// A triangle no wider and higher than this, in 1/256 pixel, is small: 32 bits hold its edge
 /// functions in all 4x4 blocks of pixels that its bounds touch. They stay below
 /// 2 * 22528 * (22528 + 8 * 256) < 2^31.
@@ -115,7 +124,7 @@ struct LaneChunk {
   std::uint32_t triangle_room = 0;
   std::vector<Bin> bins;
   std::vector<TileBins> tiles;
-  // Made by clipping, and of large triangles. Triangles point to them, so they must not move.
+  // Made by clipping, and edges of large triangles. Triangles point to them, so they must not move.
   std::deque<std::array<float, vertex_row_size(kMaxVaryings)>> new_vertices;
   std::deque<LargeEdges> large;
 };

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -128,45 +129,56 @@ void check_all_isas(Target target, const DrawState& state, const Vertices& verti
   }
 }
 
-// --- surfaces of pixels, one pixel after the other ---
-
-struct Surfaces {
-  Image picture, other, coverage, depth;
-};
-
-Surfaces no_surfaces(const Target& target) {
-  Surfaces surfaces{make_image(Format::rgba16f, target.width, target.height),
-                    make_image(Format::rgba16f, target.width, target.height),
-                    make_image(Format::r8, target.width, target.height),
-                    make_image(Format::r32f, target.width, target.height)};
-  clear_image(surfaces.coverage, glm::vec4{1.0f}, {});  // what is not written shows
-  return surfaces;
-}
-
-constexpr glm::vec4 kSurfacesClear{0.25f};
-constexpr float kSurfacesDepth = 0.75f;
-
-Surfaces draw_surfaces(Isa isa, const Target& target, const Vertices& vertices,
-                       std::span<const std::uint32_t> indices, const Profile& profile) {
-  Surfaces surfaces = no_surfaces(target);
-  Image colour = make_image(Format::rgba16f, target.width, target.height * target.samples);
-  Image depth = make_image(Format::r32f, target.width, target.height * target.samples);
+RenderPass pass_into(Image& colour, Image& depth, Isa isa) {
   RenderPass pass;
-  pass.profile = profile;
   pass.targets.colour[0] = &colour;
   pass.targets.depth = &depth;
-  pass.targets.samples = target.samples;
-  pass.surfaces = {&surfaces.picture, &surfaces.other, &surfaces.coverage, &surfaces.depth};
   pass.isa = isa;
-  pass.clear_colour = kSurfacesClear;
-  pass.clear_depth = kSurfacesDepth;
+  return pass;
+}
+
+// --- edges, one pixel after the other ---
+
+struct Edges {
+  Image picture, depth, other, coverage;
+};
+
+Edges no_edges(const Target& target) {
+  Edges edges{make_image(Format::rgba16f, target.width, target.height),
+              make_image(Format::r32f, target.width, target.height),
+              make_image(Format::rgba16f, target.width, target.height),
+              make_image(Format::r8, target.width, target.height)};
+  clear_image(edges.coverage, glm::vec4{1.0f}, {});  // what is not written shows
+  return edges;
+}
+
+constexpr glm::vec4 kEdgesClear{0.25f};
+constexpr float kEdgesDepth = 0.75f;
+
+Edges draw_edges(Isa isa, const Target& target, int samples, const Vertices& vertices,
+                 std::span<const std::uint32_t> indices, const Profile& profile,
+                 std::size_t layers = 1) {
+  Edges edges = no_edges(target);
+  std::vector<Image> colours, depths;
+  for (std::size_t i = 1; i < layers; ++i) {
+    colours.push_back(make_image(Format::rgba16f, target.width, target.height));
+    depths.push_back(make_image(Format::r32f, target.width, target.height));
+  }
+  RenderPass pass = pass_into(edges.picture, edges.depth, isa);
+  for (std::size_t i = 1; i < layers; ++i) {
+    pass.targets.behind[i - 1] = {&colours[i - 1], &depths[i - 1]};
+  }
+  pass.profile = profile;
+  if (samples > 1) pass.edges = {samples, &edges.other, &edges.coverage};
+  pass.clear_colour = kEdgesClear;
+  pass.clear_depth = kEdgesDepth;
   DrawState state;
   state.cull = Cull::none;
   draw_in_lanes(pass, state, indices, static_cast<std::uint32_t>(vertices.size()),
                 test::ListedVertices<4>{&vertices}, MixedColour{}, stages_for(isa));
   ThreadPool pool{2, isa};
   finish(pass, pool);
-  return surfaces;
+  return edges;
 }
 
 struct PlacedTriangle {
@@ -175,7 +187,8 @@ struct PlacedTriangle {
 };
 
 // Of triangles that nothing clips.
-std::vector<PlacedTriangle> place_triangles(const Target& target, const Vertices& vertices,
+std::vector<PlacedTriangle> place_triangles(const Target& target, int samples,
+                                            const Vertices& vertices,
                                             std::span<const std::uint32_t> indices,
                                             const Profile& profile) {
   std::vector<PlacedTriangle> placed;
@@ -187,9 +200,8 @@ std::vector<PlacedTriangle> place_triangles(const Target& target, const Vertices
       window[k] = to_window(vertex.position, target.width, target.height, profile.viewport);
       varyings[k] = vertex.varyings;
     }
-    const auto setup =
-        set_up_triangle(window, Cull::none, FrontFace::counter_clockwise,
-                        {0, 0, target.width, target.height}, profile, target.samples);
+    const auto setup = set_up_triangle(window, Cull::none, FrontFace::counter_clockwise,
+                                       {0, 0, target.width, target.height}, profile, 1, samples);
     if (!setup) continue;
     placed.push_back({{*setup, varyings, 2}, {indices[i], indices[i + 1], indices[i + 2]}});
   }
@@ -230,126 +242,137 @@ glm::vec4 shaded(const PlacedTriangle& placed, int x, int y, const glm::ivec2& p
 }
 
 template <class Interpolator>
-void store_pixel(Surfaces& to, const Target& target, std::span<const PlacedTriangle> triangles,
-                 int x, int y, const Profile& profile) {
-  const std::span<const glm::ivec2> places = sample_places(target.samples);
-  std::vector<const PlacedTriangle*> shows(places.size());
-  std::vector<float> depths(places.size(), kSurfacesDepth);
-  for (const PlacedTriangle& placed : triangles) {
-    const Interpolator interpolator{placed.triangle, profile, MixedColour::kInterpolation};
-    for (std::size_t s = 0; s < places.size(); ++s) {
-      if (!covers(placed, x, y, places[s])) continue;
-      const float depth = draw_detail::clamped_depth(
-          interpolator.depth(interpolator.pixel(x, y, places[s])), profile);
-      if (!(depth < depths[s])) continue;
-      depths[s] = depth;
-      shows[s] = &placed;
+void store_edge(const Image& picture, Edges& to, int samples,
+                std::span<const PlacedTriangle> triangles, int x, int y, const Profile& profile) {
+  const std::span<const glm::ivec2> places = sample_places(samples);
+  const auto shown_at = [&](const glm::ivec2& place) {
+    const PlacedTriangle* shown = nullptr;
+    float nearest = kEdgesDepth;
+    for (const PlacedTriangle& placed : triangles) {
+      const Rectangle& bounds = placed.triangle.setup.bounds;
+      if (x < bounds.x_begin || x >= bounds.x_end || y < bounds.y_begin || y >= bounds.y_end) {
+        continue;
+      }
+      if (!covers(placed, x, y, place)) continue;
+      const Interpolator interpolator{placed.triangle, profile, MixedColour::kInterpolation};
+      const float depth =
+          draw_detail::clamped_depth(interpolator.depth(interpolator.pixel(x, y, place)), profile);
+      if (!(depth < nearest)) continue;
+      nearest = depth;
+      shown = &placed;
     }
-  }
-  Image cleared = make_image(Format::rgba16f, 1, 1);
-  store_texel(cleared, 0, 0, kSurfacesClear, profile);
-  std::vector<glm::vec4> texels(places.size());
+    return shown;
+  };
+  const auto are_one = [](const PlacedTriangle* a, const PlacedTriangle* b) {
+    return a == b || (a != nullptr && b != nullptr && share_surface(*a, *b));
+  };
+  const PlacedTriangle* centre = shown_at({});
+  std::vector<const PlacedTriangle*> shows;
+  for (const glm::ivec2& place : places) shows.push_back(shown_at(place));
   std::vector<bool> is_done(places.size());
+  std::vector<glm::vec4> texels(places.size()), others;
   for (std::size_t first = 0; first < places.size(); ++first) {
-    if (is_done[first]) continue;
+    if (is_done[first] || are_one(centre, shows[first])) continue;
     std::vector<std::size_t> of_surface;
     for (std::size_t s = first; s < places.size(); ++s) {
-      const bool same =
-          shows[s] == shows[first] || (shows[s] != nullptr && shows[first] != nullptr &&
-                                       share_surface(*shows[first], *shows[s]));
-      if (!is_done[s] && same) of_surface.push_back(s);
-    }
-    glm::vec4 texel = load_texel(cleared, 0, 0);
-    if (shows[first] != nullptr) {
-      const PlacedTriangle* by = nullptr;
-      glm::ivec2 place{};
-      int most = 0;
-      for (const std::size_t s : of_surface) {
-        int count = 0;
-        glm::ivec2 sum{};
-        for (const std::size_t other : of_surface) {
-          if (shows[other] != shows[s]) continue;
-          sum += places[other];
-          ++count;
-        }
-        if (covers(*shows[s], x, y, {})) {
-          by = shows[s];
-          place = {};
-          break;
-        }
-        if (count <= most) continue;
-        by = shows[s];
-        most = count;
-        place = sum / count;
+      if (!is_done[s] && !are_one(centre, shows[s]) && are_one(shows[first], shows[s])) {
+        of_surface.push_back(s);
       }
-      texel = shaded<Interpolator>(*by, x, y, place, profile);
     }
+    const PlacedTriangle* by = nullptr;
+    glm::ivec2 place{};
+    int most = 0;
     for (const std::size_t s : of_surface) {
-      texels[s] = texel;
+      int count = 0;
+      glm::ivec2 sum{};
+      for (const std::size_t other : of_surface) {
+        if (shows[other] != shows[s]) continue;
+        sum += places[other];
+        ++count;
+      }
+      if (count <= most) continue;
+      by = shows[s];
+      most = count;
+      place = sum / count;
+    }
+    Image texel = make_image(Format::rgba16f, 1, 1);
+    store_texel(texel, 0, 0, kEdgesClear, profile);
+    for (const std::size_t s : of_surface) {
+      texels[s] =
+          by == nullptr ? load_texel(texel, 0, 0) : shaded<Interpolator>(*by, x, y, place, profile);
       is_done[s] = true;
     }
   }
-  const PixelSurfaces found = surfaces_of(texels);
-  store_texel(to.picture, x, y, found.texel, profile);
-  if (found.other_samples > 0) store_texel(to.other, x, y, found.other, profile);
-  const auto column = static_cast<std::size_t>(x);
-  row<std::uint8_t>(to.coverage, y)[column] = coverage_byte(found.other_samples, target.samples);
-  row<float>(to.depth, y)[column] = depths[static_cast<std::size_t>(found.first)];
+  for (std::size_t s = 0; s < places.size(); ++s) {
+    if (is_done[s]) others.push_back(texels[s]);
+  }
+  const OtherSurface found = other_surface(load_texel(picture, x, y).w, others);
+  row<std::uint8_t>(to.coverage, y)[static_cast<std::size_t>(x)] =
+      coverage_byte(found.samples, samples);
+  if (found.samples > 0) store_texel(to.other, x, y, found.texel, profile);
 }
 
-void check_surfaces(Target target, const Vertices& vertices, std::span<const std::uint32_t> indices,
-                    const Profile& profile) {
+// Returns how many edge pixels there were.
+int check_edges(const Target& target, const Vertices& vertices,
+                std::span<const std::uint32_t> indices, const Profile& profile) {
+  int mixed = 0;
   for (const int samples : {4, 8}) {
-    target.samples = samples;
-    Surfaces expected = no_surfaces(target);
-    const auto triangles = place_triangles(target, vertices, indices, profile);
-    for (int y = 0; y < target.height; ++y) {
-      for (int x = 0; x < target.width; ++x) {
-        if (profile.attributes == AttributeSetup::exact_barycentric) {
-          store_pixel<BarycentricInterpolator<4>>(expected, target, triangles, x, y, profile);
-        } else {
-          using Interpolator = PlaneInterpolator<PlanesFromOrigin, 4>;
-          store_pixel<Interpolator>(expected, target, triangles, x, y, profile);
-        }
-      }
-    }
     for (const Isa isa : available_isas()) {
       if (isa == Isa::scalar) continue;
-      const Surfaces drawn = draw_surfaces(isa, target, vertices, indices, profile);
-      INFO("isa ", isa_name(isa));
-      INFO("samples ", samples);
-      CHECK(equal(drawn.picture, expected.picture));
-      CHECK(equal(drawn.depth, expected.depth));
-      CHECK(equal(drawn.coverage, expected.coverage));
-      int different = 0, mixed = 0;
+      const Edges without = draw_edges(isa, target, 1, vertices, indices, profile);
+      Edges expected = no_edges(target);
+      const auto triangles = place_triangles(target, samples, vertices, indices, profile);
       for (int y = 0; y < target.height; ++y) {
         for (int x = 0; x < target.width; ++x) {
-          if (load_texel(expected.coverage, x, y).x == 0.0f) continue;
-          ++mixed;
-          different +=
-              !test::same_bits(load_texel(drawn.other, x, y), load_texel(expected.other, x, y));
+          if (profile.attributes == AttributeSetup::exact_barycentric) {
+            store_edge<BarycentricInterpolator<4>>(without.picture, expected, samples, triangles, x,
+                                                   y, profile);
+          } else {
+            using Interpolator = PlaneInterpolator<PlanesFromOrigin, 4>;
+            store_edge<Interpolator>(without.picture, expected, samples, triangles, x, y, profile);
+          }
         }
       }
-      CHECK(different == 0);
-      CHECK(mixed > 0);
+      for (const std::size_t layers : {std::size_t{1}, std::size_t{3}}) {
+        const Edges drawn = draw_edges(isa, target, samples, vertices, indices, profile, layers);
+        INFO("isa ", isa_name(isa));
+        INFO("samples ", samples, ", layers ", layers);
+        CHECK(equal(drawn.picture, without.picture));
+        CHECK(equal(drawn.depth, without.depth));
+        CHECK(equal(drawn.coverage, expected.coverage));
+        int different = 0;
+        for (int y = 0; y < target.height; ++y) {
+          for (int x = 0; x < target.width; ++x) {
+            if (load_texel(expected.coverage, x, y).x == 0.0f) continue;
+            ++mixed;
+            different +=
+                !test::same_bits(load_texel(drawn.other, x, y), load_texel(expected.other, x, y));
+          }
+        }
+        CHECK(different == 0);
+      }
     }
   }
+  return mixed;
 }
 
 // Sheets of quads that share corners, bent and before each other.
 std::pair<Vertices, std::vector<std::uint32_t>> sheets(test::Random& random, const Target& target,
-                                                       int sheet_count, int cells) {
+                                                       int sheet_count, int cells,
+                                                       std::optional<double> size = {}) {
   Vertices vertices;
   std::vector<std::uint32_t> indices;
   for (int sheet = 0; sheet < sheet_count; ++sheet) {
     const auto first = static_cast<std::uint32_t>(vertices.size());
     const double x = random.between(2.0, target.width * 0.6),
                  y = random.between(2.0, target.height * 0.6);
-    const double cell = random.between(0.4, 5.0);
+    const double cell = size.value_or(random.between(0.4, 5.0));
     for (int j = 0; j <= cells; ++j) {
       for (int i = 0; i <= cells; ++i) {
-        const glm::vec2 window{static_cast<float>(x + cell * (i + random.between(-0.6, 0.6))),
-                               static_cast<float>(y + cell * (j + random.between(-0.6, 0.6)))};
+        const double from = size ? 0.5 * cells : 0.0;  // a large one lies about its middle
+        const glm::vec2 window{
+            static_cast<float>(x + cell * (i - from + random.between(-0.6, 0.6))),
+            static_cast<float>(y + cell * (j - from + random.between(-0.6, 0.6)))};
         VertexOutput<4> vertex{
             test::at_window(window, target.width, target.height, random.between(-0.9f, 0.9f)), {}};
         vertex.position *= random.between(0.5f, 2.0f);
@@ -373,14 +396,6 @@ std::pair<Vertices, std::vector<std::uint32_t>> sheets(test::Random& random, con
 constexpr std::array kProfileNames{"ieee", "d3d11", "llvmpipe", "llvmpipe-sse41"};
 constexpr Target kTarget{150, 97};
 
-RenderPass pass_into(Image& colour, Image& depth, Isa isa) {
-  RenderPass pass;
-  pass.targets.colour[0] = &colour;
-  pass.targets.depth = &depth;
-  pass.isa = isa;
-  return pass;
-}
-
 }  // namespace
 
 TEST_CASE("lanes: triangles of every size have the scalar form's bits") {
@@ -394,16 +409,27 @@ TEST_CASE("lanes: triangles of every size have the scalar form's bits") {
   }
 }
 
-TEST_CASE("lanes: the surfaces of pixels are those that are found pixel by pixel") {
+TEST_CASE("lanes: edges are those that are found pixel by pixel, and leave the picture as it is") {
   const Target target{75, 70};  // four tiles
   for (const char* name : kProfileNames) {
     INFO("profile ", name);
     test::Random random{512};
     for (const int cells : {1, 4, 12}) {
       const auto [vertices, indices] = sheets(random, target, fewer(40) / cells + 1, cells);
-      check_surfaces(target, vertices, indices, profile_named(name));
+      CHECK(check_edges(target, vertices, indices, profile_named(name)) > 0);
     }
   }
+}
+
+TEST_CASE("lanes: edges of triangles far larger than the picture") {
+  const Target target{40, 30};
+  test::Random random{513};
+  int edges = 0;
+  for (const double cell : {95.0, 130.0, 170.0}) {
+    const auto [vertices, indices] = sheets(random, target, 6, 2, cell);
+    edges += check_edges(target, vertices, indices, {});
+  }
+  CHECK(edges > 0);
 }
 
 TEST_CASE("lanes: triangles as large as the guard band lets them be have the scalar form's bits") {

@@ -197,49 +197,57 @@ TEST_CASE("a resolved pixel is the mean of its samples") {
   CHECK(load_texel(resolved, 1, 1) == glm::vec4{1.0f, 5.5f, 5.5f, 1.0f});
 }
 
-TEST_CASE("a pixel's surfaces add up to the mean of its samples, and mix no depths") {
+TEST_CASE(
+    "the other surface of a pixel is of one depth, and has the mean of its samples' colours") {
   test::Random random{702};
   for (int i = 0; i < 2000; ++i) {
-    const std::size_t count = random.whole(0, 1) == 0 ? 4 : 8;
-    const float near_m = random.between(0.5f, 20.0f), far_m = near_m * random.between(1.1f, 50.0f);
+    const float centre_m = random.between(0.5f, 20.0f);
+    const bool is_farther = random.whole(0, 1) == 0;
+    const float apart = random.between(1.1f, 50.0f);
+    const float other_m = is_farther ? centre_m * apart : centre_m / apart;
     std::vector<glm::vec4> samples;
     glm::vec3 sum{0.0f};
-    int near_count = 0;
-    for (std::size_t s = 0; s < count; ++s) {
-      const bool is_near = random.whole(0, 1) == 0;
-      near_count += is_near;
+    int count = 0;
+    for (int s = 0; s < 8; ++s) {
+      const bool is_other = s == 0 || random.whole(0, 1) == 0;
+      count += is_other;
       samples.push_back({random.between(0.0f, 1.0f), random.between(0.0f, 1.0f),
-                         random.between(0.0f, 1.0f),
-                         (is_near ? near_m : far_m) * random.between(1.0f, 1.01f)});
-      sum += glm::vec3{samples.back()};
+                         random.between(0.0f, 1.0f), is_other ? other_m : centre_m * 1.01f});
+      if (is_other) sum += glm::vec3{samples.back()};
     }
-    const PixelSurfaces surfaces = surfaces_of(samples);
-    const auto all = static_cast<float>(count);
-    const float other = static_cast<float>(surfaces.other_samples) / all;
-    CHECK(other <= 0.5f);
+    const OtherSurface other = other_surface(centre_m, samples);
+    CHECK(other.samples == count);
+    CHECK(other.texel.w == other_m);
     for (int k = 0; k < 3; ++k) {
-      const float mean = surfaces.texel[k] * (1.0f - other) + surfaces.other[k] * other;
-      CHECK(mean == doctest::Approx(sum[k] / all).epsilon(1e-5));
-    }
-    const int smaller = std::min(near_count, static_cast<int>(count) - near_count);
-    CHECK(surfaces.other_samples == smaller);
-    const bool shows_near = 2 * near_count >= static_cast<int>(count);
-    CHECK(surfaces.texel.w ==
-          doctest::Approx((shows_near ? near_m : far_m) * 1.005).epsilon(0.006));
-    if (smaller > 0) {
-      CHECK(surfaces.other.w ==
-            doctest::Approx((shows_near ? far_m : near_m) * 1.005).epsilon(0.006));
+      CHECK(other.texel[k] == doctest::Approx(sum[k] / static_cast<float>(count)).epsilon(1e-5));
     }
   }
 }
 
-TEST_CASE("samples of one depth are one surface, and equal ones stay as they are") {
-  const glm::vec4 texel{-0.0f, 0.3f, 0.1f, 4.0f};
-  const std::array<glm::vec4, 4> equal{texel, texel, texel, texel};
-  CHECK(surfaces_of(equal).other_samples == 0);
-  CHECK(std::signbit(surfaces_of(equal).texel.x));
-  const std::array<glm::vec4, 4> sloping{
-      glm::vec4{0, 0, 0, 4.0f}, {1, 0, 0, 4.05f}, {0, 1, 0, 4.1f}, {0, 0, 1, 4.12f}};
-  CHECK(surfaces_of(sloping).other_samples == 0);
-  CHECK(surfaces_of(sloping).texel.x == 0.25f);
+TEST_CASE("samples at the centre's depth are all of the other surface; a third one is left out") {
+  const std::array<glm::vec4, 3> edge{glm::vec4{1, 0, 0, 4.0f}, {0, 1, 0, 4.02f}, {0, 1, 0, 4.02f}};
+  CHECK(other_surface(4.0f, edge).samples == 3);
+  CHECK(other_surface(4.0f, edge).texel.w == 4.02f);
+  // Of a distant floor at 60 and 80 m, and a thing at 2 m before it.
+  const std::array<glm::vec4, 3> three{
+      glm::vec4{1, 0, 0, 60.0f}, {0, 1, 0, 2.0f}, {0, 0, 1, 80.0f}};
+  CHECK(other_surface(70.0f, three).samples == 1);
+  CHECK(other_surface(70.0f, three).texel == glm::vec4{0, 1, 0, 2.0f});
+}
+
+TEST_CASE("edges from a multisampled image are the samples of another depth") {
+  Image picture = make_image(Format::rgba16f, 3, 1), samples = make_image(Format::rgba16f, 3, 4);
+  Image other = make_image(Format::rgba16f, 3, 1), coverage = make_image(Format::r8, 3, 1);
+  for (int x = 0; x < 3; ++x) {
+    store_texel(picture, x, 0, {1, 1, 1, 2}, {});
+    for (int s = 0; s < 4; ++s) {
+      store_texel(samples, x, s, s < x ? glm::vec4{0, 0.5f, 0, 8} : glm::vec4{0.25f, 1, 1, 2}, {});
+    }
+  }
+  ThreadPool pool{1};
+  find_edges(picture, samples, {4, &other, &coverage}, {}, pool);
+  CHECK(row<std::uint8_t>(coverage, 0)[0] == 0);
+  CHECK(row<std::uint8_t>(coverage, 0)[1] == 64);
+  CHECK(row<std::uint8_t>(coverage, 0)[2] == 128);
+  CHECK(load_texel(other, 2, 0) == glm::vec4{0, 0.5f, 0, 8});
 }
