@@ -40,8 +40,31 @@ struct Side {
   }
 };
 
+struct Sides {
+  Side shown, other;
+};
+
+Sides sides_of(float shown_m, float other_m) {
+  const float shown = 1.0f / shown_m, other = 1.0f / other_m;
+  const float border = 0.5f * (shown + other);
+  const bool is_both = is_one_surface(shown_m, other_m);
+  return {{shown, border, is_both}, {other, border, is_both}};
+}
+
+// The rows of a picture about one.
+std::array<std::span<const std::uint16_t>, 3> rows_about(const ConstImageView& picture, int y) {
+  const auto at = [&](int row_y) {
+    return row<std::uint16_t>(picture, std::clamp(row_y, 0, picture.height - 1));
+  };
+  return {at(y - 1), at(y), at(y + 1)};
+}
+
+constexpr int kRowsAtOnce = 8;  // that a thread takes
+
 // The neighbour that shows a surface: of the nearest ring that has one, that of the nearest depth.
-std::optional<Neighbour> find_shown(const EdgeRows& rows, int x, int width, const Side& side) {
+std::optional<Neighbour> find_shown(const std::array<std::span<const std::uint16_t>, 3>& scene,
+                                    int x, const Side& side) {
+  const auto width = static_cast<int>(scene[1].size() / 4);
   std::size_t begin = 0;
   for (const std::size_t end : kRingEnds) {
     std::optional<Neighbour> found;
@@ -50,7 +73,7 @@ std::optional<Neighbour> find_shown(const EdgeRows& rows, int x, int width, cons
       const int column = x + kAround[i].dx;
       if (column < 0 || column >= width) continue;
       const auto row = static_cast<std::size_t>(1 + kAround[i].dy);
-      const float inverse = 1.0f / texel_of(rows.scene[row], column).w;
+      const float inverse = 1.0f / texel_of(scene[row], column).w;
       if (!side.has(inverse)) continue;
       const float away = std::fabs(inverse - side.surface);
       if (found && !(away < least)) continue;
@@ -81,9 +104,9 @@ float kept(const glm::vec3& before, const glm::vec3& filtered) {
   return most < tenth ? 1.0f - most / tenth : largest == 0.0f ? 1.0f : 0.0f;
 }
 
-glm::vec3 filtered_surface(const EdgeRows& rows, int x, int width, const glm::vec4& surface,
-                           const Side& side, const DofSettings& settings) {
-  const Neighbour at = find_shown(rows, x, width, side).value_or(Neighbour{0, 0});
+glm::vec3 filtered_surface(const EdgeRows& rows, int x, const glm::vec4& surface, const Side& side,
+                           const DofSettings& settings) {
+  const Neighbour at = find_shown(rows.scene, x, side).value_or(Neighbour{0, 0});
   const auto row = static_cast<std::size_t>(1 + at.dy);
   const glm::vec3 filtered{texel_of(rows.filtered[row], x + at.dx)};
   const glm::vec3 before{texel_of(rows.scene[row], x + at.dx)};
@@ -101,13 +124,9 @@ void smooth_row(const EdgeRows& rows, const DofSettings& settings, HalfRounding 
     const std::uint8_t coverage = rows.coverage[static_cast<std::size_t>(x)];
     if (coverage == 0) continue;
     const glm::vec4 shown = texel_of(rows.scene[1], x), other = texel_of(rows.other, x);
-    const float of_shown = 1.0f / shown.w, of_other = 1.0f / other.w;
-    const float border = 0.5f * (of_shown + of_other);
-    const bool is_one = is_one_surface(shown.w, other.w);
-    const glm::vec3 a =
-        filtered_surface(rows, x, width, shown, {of_shown, border, is_one}, settings);
-    const glm::vec3 b =
-        filtered_surface(rows, x, width, other, {of_other, border, is_one}, settings);
+    const Sides sides = sides_of(shown.w, other.w);
+    const glm::vec3 a = filtered_surface(rows, x, shown, sides.shown, settings);
+    const glm::vec3 b = filtered_surface(rows, x, other, sides.other, settings);
     const float part = static_cast<float>(coverage) / 255.0f;
     const glm::vec3 colour = a + (b - a) * part;
     const auto at = static_cast<std::size_t>(x);
@@ -117,25 +136,39 @@ void smooth_row(const EdgeRows& rows, const DofSettings& settings, HalfRounding 
   }
 }
 
+void take_shown_colours(const ConstImageView& scene, const ConstImageView& coverage,
+                        const ImageView& other, ThreadPool& pool) {
+  for_each_row(pool, scene.height, kRowsAtOnce, [&](int y) {
+    const auto rows = rows_about(scene, y);
+    const std::span<const std::uint8_t> covered = row<std::uint8_t>(coverage, y);
+    const std::span<std::uint16_t> to = row<std::uint16_t>(other, y);
+    for (int x = 0; x < scene.width; ++x) {
+      if (covered[static_cast<std::size_t>(x)] == 0) continue;
+      const Sides sides = sides_of(texel_of(rows[1], x).w, texel_of(to, x).w);
+      const Neighbour at = find_shown(rows, x, sides.other).value_or(Neighbour{0, 0});
+      const auto from = rows[static_cast<std::size_t>(1 + at.dy)].subspan(
+          4 * static_cast<std::size_t>(x + at.dx), 3);
+      std::copy(from.begin(), from.end(), to.begin() + std::ptrdiff_t{4} * x);
+    }
+  });
+}
+
 void smooth_edges(const DofInput& input, const ImageView& filtered, ThreadPool& pool) {
   if (input.edges.coverage.texels == nullptr) return;
   const int height = filtered.height;
   std::vector<std::vector<SmoothPixel>> changed(static_cast<std::size_t>(height));
   const ConstImageView before = filtered;
-  constexpr int kRows = 8;  // that a thread takes at a time
-  for_each_row(pool, height, kRows, [&](int y) {
-    EdgeRows rows;
-    for (int i = 0; i < 3; ++i) {
-      const int from = std::clamp(y + i - 1, 0, height - 1);
-      rows.scene[static_cast<std::size_t>(i)] = row<std::uint16_t>(input.scene, from);
-      rows.filtered[static_cast<std::size_t>(i)] = row<std::uint16_t>(before, from);
-    }
+  for_each_row(pool, height, kRowsAtOnce, [&](int y) {
+    EdgeRows rows{.scene = rows_about(input.scene, y),
+                  .filtered = rows_about(before, y),
+                  .other = {},
+                  .coverage = {}};
     rows.other = row<std::uint16_t>(input.edges.other, y);
     rows.coverage = row<std::uint8_t>(input.edges.coverage, y);
     smooth_row(rows, input.settings, input.profile.half_store,
                changed[static_cast<std::size_t>(y)]);
   });
-  for_each_row(pool, height, kRows, [&](int y) {
+  for_each_row(pool, height, kRowsAtOnce, [&](int y) {
     const std::span<std::uint16_t> to = row<std::uint16_t>(filtered, y);
     for (const SmoothPixel& pixel : changed[static_cast<std::size_t>(y)]) {
       std::copy(pixel.texel.begin(), pixel.texel.end(),

@@ -38,6 +38,11 @@ struct SmoothPixel {
 void smooth_row(const EdgeRows& rows, const DofSettings& settings, HalfRounding rounding,
                 std::vector<SmoothPixel>& changed);
 
+/// Gives the other surface of each pixel the colour of the neighbour that shows it, or without such
+/// the pixel's own. For a scene whose light changed after its edges were drawn, as by shadows.
+void take_shown_colours(const ConstImageView& scene, const ConstImageView& coverage,
+                        const ImageView& other, ThreadPool& pool);
+
 /// Smooths the edges of `filtered`, made from `input`; without DofInput::edges it does nothing. A
 /// lens without circles, as of a picture that nothing blurs, has radius_at_infinity_px 0.
 void smooth_edges(const DofInput& input, const ImageView& filtered, ThreadPool& pool);

@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include "dof/smooth_edges.h"
 #include "raster/images/texel.h"
 #include "raster/numbers/vector_math.h"
 #include "raster/pipeline/draw.h"
@@ -535,11 +536,13 @@ void draw_layers(PreparedScene& prepared, const CameraMatrices& camera, double f
     draw_lit(prepared, camera, frame, layers, pool);
     pass.edges.reset();
     pass.isa = isa;
-    return;
+  } else {
+    pass.isa = isa;
+    draw_lit(prepared, camera, frame, layers, pool);
+    find_scene_edges(prepared, camera, frame, picture, to, pool);
   }
-  pass.isa = isa;
-  draw_lit(prepared, camera, frame, layers, pool);
-  find_scene_edges(prepared, camera, frame, picture, to, pool);
+  // Shadows are put into pictures, of what pixels' centres show.
+  if (prepared.shadows) take_shown_colours(picture, edges->coverage, edges->other, pool);
 }
 
 Image draw_scene(const Scene& scene, const CameraMatrices& camera, double frame, int width,

@@ -217,6 +217,31 @@ void check_supersample(const RenderOptions& options) {
   }
 }
 
+void check_multisample(const RenderOptions& options) {
+  if (options.samples == 1) return;
+  if (options.show == Show::coc || options.show == Show::depth) {
+    throw UsageError(
+        "--multisample: a map shows one surface a pixel; give --show image or pinhole");
+  }
+  if (options.gl != nullptr) {
+    throw UsageError(
+        "--multisample and --gl exclude each other: the driver's picture has no edges");
+  }
+  if (!options.sharp_depths.empty()) {
+    throw UsageError(
+        "--multisample and --sharp-depths exclude each other: radii are of one surface a pixel");
+  }
+  if (options.show != Show::image) return;
+  if (options.method.is_auto()) {
+    throw UsageError("--multisample and --method auto exclude each other; name a method");
+  }
+  if (options.method.of_scene != nullptr) {
+    throw UsageError("--multisample and --method " + std::string{options.method.name()} +
+                     " exclude each other: its views can look from all over a pixel; give "
+                     "--jitter");
+  }
+}
+
 /// Blades are of the methods that sample the lens, too; turned and stretched are those of one
 /// alone.
 void check_blades(RenderOptions& options, const CLI::App& parser) {
@@ -376,6 +401,7 @@ void complete(RenderOptions& options, const CLI::App& parser) {
   }
   if (options.shard) check_shard_count(*options.shard, options.sampling.samples);
   check_supersample(options);
+  check_multisample(options);
   if (!all_effects(options.effects).empty() &&
       (options.show == Show::coc || options.show == Show::depth)) {
     throw UsageError(

@@ -1,4 +1,4 @@
-// render --supersample, from end to end.
+// render --supersample and --multisample, from end to end.
 
 #include <doctest/doctest.h>
 
@@ -63,6 +63,68 @@ TEST_CASE("render: edges in focus are nearer to those of views from all over a p
   const double jagged = flip(ours, truth);
   drawn("96x96", ours, {"--coc-scale", "0", "--supersample", "2"});
   CHECK(flip(ours, truth) < 0.6 * jagged);
+}
+
+TEST_CASE("render: --multisample makes edges in focus smooth, more samples smoother") {
+  const TemporaryDirectory pictures;
+  const std::string truth = pictures.file("truth.npy"), ours = pictures.file("ours.npy");
+  drawn("96x96", truth,
+        {"--coc-scale", "0", "--method", "accumulation", "--samples", "256", "--jitter"});
+  for (const char* method : {"pinhole", "disc-layers", "two-pass"}) {
+    CAPTURE(method);
+    const auto error = [&](const char* samples) {
+      const auto report =
+          drawn("96x96", ours, {"--coc-scale", "0", "--method", method, "--multisample", samples});
+      CHECK(report["multisample"] == std::stoi(samples));
+      return flip(ours, truth);
+    };
+    const double jagged = error("1"), four = error("4");
+    CHECK(four < 0.7 * jagged);
+    CHECK(error("8") < four);
+  }
+}
+
+TEST_CASE("render: --multisample has the same bits in rows, whole, and without a vector unit") {
+  const TemporaryDirectory pictures;
+  const std::string rows = pictures.file("rows.npy"), other = pictures.file("other.npy");
+  // Shadows, glass and a method that peels are drawn whole.
+  for (const Words& of :
+       {Words{"figures", "--method", "two-pass"}, Words{"foliage", "--method", "pinhole"},
+        Words{"glass", "--method", "disc-layers"},
+        Words{"cube-room", "--method", "layered", "--shadows", "projected"}}) {
+    CAPTURE(of.front());
+    Words words{"render"};
+    words.insert(words.end(), of.begin(), of.end());
+    words.insert(words.end(), {"--size", "70x53", "--multisample", "4", "-q"});
+    const auto with = [&](const Words& more) {
+      Words all = words;
+      all.insert(all.end(), more.begin(), more.end());
+      return run_program(all);
+    };
+    REQUIRE(with({"-o", rows}).status == 0);
+    const ProgramRun whole = with({"-o", "-", "--format", "npy"});
+    REQUIRE(whole.status == 0);
+    CHECK(whole.out == read_file(rows));
+    REQUIRE(with({"-o", other, "--isa", "scalar", "--threads", "1"}).status == 0);
+    CHECK(read_file(other) == read_file(rows));
+    const ProgramRun plain = with({"-o", other, "--multisample", "1"});
+    CHECK(plain.status == 2);  // twice
+  }
+}
+
+TEST_CASE("render: --multisample refuses what has no place in it") {
+  const TemporaryDirectory pictures;
+  const auto refused = [&](Words more, const Words& named) {
+    more.insert(more.begin(), {"render", "figures", "-o", pictures.file("a.npy"), "--multisample"});
+    check_refused(pictures, more, 2, named);
+  };
+  refused({"2"}, {"--multisample '2'", "1, 4 or 8"});
+  refused({"4", "--method", "accumulation"}, {"--multisample", "accumulation", "--jitter"});
+  refused({"4", "--method", "auto"}, {"--multisample", "auto", "name a method"});
+  refused({"4", "--show", "depth"}, {"--multisample", "--show image or pinhole"});
+  refused({"4", "--gl", "emulated"}, {"--multisample", "--gl"});
+  refused({"4", "--method", "generalised-diffusion", "--sharp-depths", "1:2"},
+          {"--multisample", "--sharp-depths"});
 }
 
 TEST_CASE("render: --supersample refuses what has no place in it") {
