@@ -112,7 +112,7 @@ glm::vec3 filtered_surface(const EdgeRows& rows, int x, const glm::vec4& surface
   const glm::vec3 before{texel_of(rows.scene[row], x + at.dx)};
   // Not where something else is blurred over it, of which the filter alone knows how much.
   const float own = sharpness(settings, surface.w) * kept(before, filtered);
-  return filtered + (glm::vec3{surface} - before) * own;
+  return own > 0.0f ? filtered + (glm::vec3{surface} - before) * own : filtered;
 }
 
 }  // namespace
@@ -128,7 +128,7 @@ void smooth_row(const EdgeRows& rows, const DofSettings& settings, HalfRounding 
     const glm::vec3 a = filtered_surface(rows, x, shown, sides.shown, settings);
     const glm::vec3 b = filtered_surface(rows, x, other, sides.other, settings);
     const float part = static_cast<float>(coverage) / 255.0f;
-    const glm::vec3 colour = a + (b - a) * part;
+    const glm::vec3 colour = a * (1.0f - part) + b * part;
     const auto at = static_cast<std::size_t>(x);
     changed.push_back({x,
                        {float_to_half(colour.x, rounding), float_to_half(colour.y, rounding),

@@ -75,6 +75,7 @@ OtherSurface other_surface(float centre_depth, std::span<const glm::vec4> sample
 
 void find_edges(const Image& picture, const Image& multisampled, const EdgeTargets& to,
                 const Profile& profile, ThreadPool& pool) {
+  assert(to.y_begin == 0);
   constexpr int kRows = 8;  // that a thread takes at a time
   for_each_row(pool, picture.height, kRows, [&](int y) {
     for (int x = 0; x < picture.width; ++x) {
@@ -85,7 +86,8 @@ void find_edges(const Image& picture, const Image& multisampled, const EdgeTarge
         const glm::vec4 sample = load_texel<Format::rgba16f>(multisampled, x, y * to.samples + s);
         if (!is_one_surface(sample.w, centre)) others[count++] = sample;
       }
-      const OtherSurface other = other_surface(centre, std::span{others}.first(count));
+      const OtherSurface other =
+          count > 0 ? other_surface(centre, std::span{others}.first(count)) : OtherSurface{};
       row<std::uint8_t>(*to.coverage, y)[static_cast<std::size_t>(x)] =
           coverage_byte(other.samples, to.samples);
       if (other.samples > 0) store_texel(*to.other, x, y, other.texel, profile);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
 #include <span>
 
 #include "raster/images/image.h"
@@ -60,7 +61,7 @@ struct OtherSurface {
 OtherSurface other_surface(float centre_depth, std::span<const glm::vec4> samples);
 
 /// The edges of a picture from a multisampled image of it, both with depths in alpha. The centre's
-/// surface is what is_one_surface() with it.
+/// surface is what is_one_surface() with it. Needs y_begin 0.
 void find_edges(const Image& picture, const Image& multisampled, const EdgeTargets& to,
                 const Profile& profile, ThreadPool& pool);
 

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "raster/images/texel.h"
+#include "raster/pipeline/lanes/mixed_pixels.h"
 #include "raster/pipeline/lanes/rasterize_lanes.h"
-#include "raster/pipeline/lanes/resolve_lanes.h"
 #include "raster/threads/loops.h"
 
 namespace softfocus {
@@ -63,15 +63,21 @@ void clear_behind_in(const RenderPass& pass, const Rectangle& area, const glm::v
   }
 }
 
+// Of edges that are yet to be found.
+void clear_coverage(const EdgeTargets& edges, const Rectangle& area) {
+  for (int y = area.y_begin; y < area.y_end; ++y) {
+    std::memset(row<std::uint8_t>(*edges.coverage, y - edges.y_begin).data() + area.x_begin, 0,
+                static_cast<std::size_t>(area.x_end - area.x_begin));
+  }
+}
+
 // Draws in lanes collect in a VisibilityTile until a scalar draw or the end comes. If they come
 // first, the VisibilityTile clears: it need only clear the pixels that show no triangle.
 class TileDrawing {
  public:
   /// Draws in lanes go to `texels`, or to the target if that is null.
   TileDrawing(const RenderPass& pass, const Rectangle& area, TileMemory& memory, std::byte* texels)
-      : pass_(pass), area_(area), memory_(memory), texels_(texels) {
-    if (pass.edges) clear_coverage();
-  }
+      : pass_(pass), area_(area), memory_(memory), texels_(texels) {}
 
   void draw(const TileWork& item) {
     if (item.draw->lane_steps != nullptr) {
@@ -155,14 +161,6 @@ class TileDrawing {
     }
   }
 
-  void clear_coverage() const {
-    for (int y = area_.y_begin; y < area_.y_end; ++y) {
-      std::memset(row<std::uint8_t>(*pass_.edges->coverage, y - pass_.edges->y_begin).data() +
-                      area_.x_begin,
-                  0, static_cast<std::size_t>(area_.x_end - area_.x_begin));
-    }
-  }
-
   void clear_layers(std::size_t layers) const {
     clear_unseen(pass_.isa, *memory_, layers, *pass_.clear_colour, pass_.profile);
   }
@@ -208,18 +206,15 @@ class TileDrawing {
   bool is_cleared_ = false;
 };
 
-bool is_in_lanes(std::span<const TileWork> work) {
-  return std::all_of(work.begin(), work.end(),
-                     [](const TileWork& item) { return item.draw->lane_steps != nullptr; });
-}
-
 void draw_tile(const RenderPass& pass, const TileLists& lists, int tile, TileMemory& memory,
                std::byte* texels) {
   assert(!has_layers(pass.targets) ||
          pass.clear_colour.has_value() == pass.clear_depth.has_value());
   assert(!pass.edges || (pass.clear_colour && pass.clear_depth && pass.targets.samples == 1));
+  const Rectangle area = tile_area(lists, tile);
+  if (pass.edges) clear_coverage(*pass.edges, area);
+  TileDrawing drawing{pass, area, memory, texels};
   const std::span<const TileWork> work = work_of_tile(lists, tile);
-  TileDrawing drawing{pass, tile_area(lists, tile), memory, texels};
   for (std::size_t i = 0; i < work.size(); ++i) {
     // The next item was listed long ago, and has left the caches.
     if (i + 1 < work.size()) __builtin_prefetch(work[i + 1].bins.data());
@@ -251,6 +246,7 @@ void draw_tile_aside(const RenderPass& pass, const TileLists& lists, int tile, T
   const Rectangle area = tile_area(lists, tile);
   const int width = area.x_end - area.x_begin, height = area.y_end - area.y_begin;
   if (work.empty()) {
+    if (pass.edges) clear_coverage(*pass.edges, area);
     const ImageView to = view_of(Format::rgba16f, texels, width, height);
     for (int y = 0; y < height; ++y) {
       for (int x = 0; x < width; ++x) {
@@ -259,7 +255,10 @@ void draw_tile_aside(const RenderPass& pass, const TileLists& lists, int tile, T
     }
     return;
   }
-  if (is_in_lanes(work)) {
+  const bool in_lanes = std::all_of(work.begin(), work.end(), [](const TileWork& item) {
+    return item.draw->lane_steps != nullptr;
+  });
+  if (in_lanes) {
     draw_tile(pass, lists, tile, memory, texels);
     return;
   }

@@ -36,9 +36,9 @@ struct VertexOutput {
 //     static constexpr bool kNeedsDerivatives   whether it reads ddx and ddy
 //     static constexpr bool kDiscards           whether it may discard a fragment
 //     bool discards() const                     if some draws of a stage that may do not
-//     static constexpr bool kCentroid = true    if of a pixel that is covered in part its varyings
-//     are
-//                                               those of the first sample that passes early tests
+//     static constexpr bool kCentroid = true    if a pixel's varyings, where it is covered in part,
+//                                               are those of its first sample that passes early
+//                                               tests
 //     FragmentOutput<C> operator()(const Fragment<N>&) const    C colour targets
 // Both are called from several threads at once, and must not write what they share.
 

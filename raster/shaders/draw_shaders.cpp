@@ -340,7 +340,8 @@ class FragmentBatches {
       put(shading, x + (i & 1), y + (i >> 1), covered[static_cast<std::size_t>(i)]);
     }
     bool any = false;
-    for (std::size_t i = before; i < before + 4; ++i) any = any || memory_.fragments[i].covered != 0;
+    for (std::size_t i = before; i < before + 4; ++i)
+      any = any || memory_.fragments[i].covered != 0;
     if (!any) memory_.fragments.resize(before);
     if (memory_.fragments.size() == lanes_) flush();
   }
@@ -365,8 +366,8 @@ class FragmentBatches {
         Waiting{x, y, depth_at(pixel), {}, shading.front_facing, covered});
     const std::span<const glm::ivec2> places = sample_places(draw_.targets.samples);
     for (std::size_t s = 0; s < places.size(); ++s) {
-      fragment.depths[s] = places.size() == 1 ? fragment.depth
-                                              : depth_at(shading.first.pixel(x, y, places[s]));
+      fragment.depths[s] =
+          places.size() == 1 ? fragment.depth : depth_at(shading.first.pixel(x, y, places[s]));
     }
     if (!draw_.tests_come_last) fragment.covered = tested(fragment, fragment.depths);
     for (std::size_t i = 0; i < draw_.inputs.size(); ++i) {
@@ -376,7 +377,8 @@ class FragmentBatches {
   }
 
   /// Those of its samples that pass.
-  draw_detail::Samples tested(const Waiting& fragment, const std::array<float, kMaxSamples>& depths) const {
+  draw_detail::Samples tested(const Waiting& fragment,
+                              const std::array<float, kMaxSamples>& depths) const {
     const int count = draw_.targets.samples;
     draw_detail::Samples passing = 0;
     for (int s = 0; s < count; ++s) {

@@ -424,6 +424,7 @@ void draw_lit(PreparedScene& prepared, const CameraMatrices& camera, double fram
   for (int i = 0; i < points; ++i) {
     const std::vector<Light> lights = lights_at_point(scene.lights, static_cast<std::uint32_t>(i));
     draw_lit_by(prepared, camera, frame, lights, layers, pool);
+    prepared.pass.edges.reset();  // they are the same by any light
     add_layers(layers, sums, pool);
     if (prepared.on_light_points) prepared.on_light_points(i + 1);
   }
@@ -520,6 +521,8 @@ void draw_layers(PreparedScene& prepared, const CameraMatrices& camera, double f
   }
   std::vector<Image*> layers{&picture};
   for (Image& layer : behind) layers.push_back(&layer);
+  const bool finds_edges = pass.profile.coverage == Coverage::edge_functions;
+  if (edges != nullptr && !finds_edges) edges->samples = 1;
   if (edges == nullptr || edges->samples == 1) {
     draw_lit(prepared, camera, frame, layers, pool);
     return;

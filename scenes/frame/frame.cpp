@@ -8,7 +8,6 @@
 #include "dof/halve.h"
 #include "dof/lens.h"
 #include "dof/show.h"
-#include "dof/smooth_edges.h"
 #include "raster/images/texel.h"
 #include "scenes/draw/draw_scene.h"
 #include "scenes/draw/frame_matrices.h"
@@ -48,6 +47,7 @@ void draw_after_others(const Shot& shot, const ChosenEffect& effect, PreparedSce
   drawn.parts.opaque = sequence.history.picture;
   drawn.parts.blended = {};
   drawn.parts.transparent.clear();
+  drawn.parts.edges.samples = 1;
   drawn.shaded_share = sequence.history.shaded_share;
 }
 
@@ -96,11 +96,6 @@ Image filtered(const Shot& shot, const DrawnFrame& drawn, const UsedLens& lens, 
   if (shot.arithmetic != Arithmetic::floats) {
     Image result = picture_like(parts.picture(), memory);
     two_pass_in(shot.arithmetic, {parts.picture(), lens.settings, shot.profile}, result, pool);
-    // What is transparent is in the picture, and edges behind it are not.
-    if (parts.edges.samples > 1 && parts.transparent.empty()) {
-      with_dof_input(parts, lens.settings, shot.profile, {}, {},
-                     [&](const DofInput& input) { smooth_edges(input, result, pool); });
-    }
     return result;
   }
   const std::size_t layers = layers_of(shot);

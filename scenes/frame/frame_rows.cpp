@@ -101,8 +101,8 @@ struct FrameRows::State {
     if (shot.samples > 1) pass.edges = EdgeTargets{shot.samples, &other, &coverage};
     record_scene(prepared, frame.view, shot.frame, pass);
     sort_into_tiles({&pass, 1}, {&tiles, 1}, pool);
-    if (is_two_pass(shot)) edge_settings = frame.lens->settings;
     if (is_two_pass(shot)) {
+      edge_settings = frame.lens->settings;
       stream.emplace(shot.width, frame.lens->settings, shot.profile, pool.isa());
     }
     tell(FrameStage::done);

@@ -185,11 +185,14 @@ void complete(BenchOptions& options, const CLI::App& parser) {
     throw UsageError("--image and --size exclude each other: --image has the size");
   }
   if (options.image) options.size = *options.image;
-  if (options.samples > 1 && (options.image || options.versus != nullptr ||
-                              options.method.filter == nullptr || !options.effects.empty())) {
+  if (options.samples > 1 &&
+      (options.image || options.versus != nullptr || options.method.filter == nullptr ||
+       options.all_effects || !options.effects.empty() ||
+       options.arithmetic != Arithmetic::floats ||
+       options.profile.coverage != Coverage::edge_functions)) {
     throw UsageError(
-        "--multisample needs a SCENE or --triangles N that is drawn and filtered, without --vs and "
-        "--effect");
+        "--multisample needs a SCENE or --triangles N that is drawn and filtered, without --vs, "
+        "--effect, --arithmetic and --profile softpipe");
   }
   if (options.frames && (options.scene.empty() || options.all_effects || !options.effects.empty() ||
                          options.arithmetic != Arithmetic::floats)) {

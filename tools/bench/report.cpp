@@ -161,6 +161,7 @@ Json run_json(const BenchOptions& options, const BenchWork& work) {
   Json json{{"softfocus", SOFTFOCUS_VERSION},
             {"scene", work.name},
             {"size", size_text(work.size)},
+            {"multisample", work.samples},
             {"profile", work.profile_name},
             {"threads", options.pool.threads},
             {"isa", isa_name(options.pool.isa)},

@@ -36,8 +36,8 @@ struct Case {
 
 /// All cases, in the order of the pipeline's stages.
 std::vector<Case> crosscheck_cases();
-/// The quick ones that any driver draws, WebGL2's too; if there are to be few, each shader's cheapest or so: the first of a stage, and
-/// what has shaders that it lacks.
+/// The quick ones that any driver draws, WebGL2's too; if there are to be few, each shader's
+/// cheapest or so: the first of a stage, and what has shaders that it lacks.
 std::vector<Case> quick_cases(bool few);
 
 // One function a file.

@@ -223,6 +223,13 @@ void check_multisample(const RenderOptions& options) {
     throw UsageError(
         "--multisample: a map shows one surface a pixel; give --show image or pinhole");
   }
+  if (options.profile.coverage != Coverage::edge_functions) {
+    throw UsageError("--multisample and --profile " + options.profile_name +
+                     " exclude each other: softpipe has one sample a pixel");
+  }
+  if (options.arithmetic != Arithmetic::floats) {
+    throw UsageError("--multisample and --arithmetic exclude each other: edges are of floats");
+  }
   if (options.gl != nullptr) {
     throw UsageError(
         "--multisample and --gl exclude each other: the driver's picture has no edges");
@@ -280,6 +287,9 @@ constexpr std::uint64_t kSoftBytesPerPixel = 3 * 8;
 /// draws the velocity (12).
 constexpr std::uint64_t kHistoryBytesPerPixel = 4 * 8 + 4 + 4 + 12;
 
+/// And for edges: another surface and its part.
+constexpr std::uint64_t kEdgeBytesPerPixel = 8 + 1;
+
 std::uint64_t bytes_per_pixel(const RenderOptions& options) {
   const std::vector<ChosenEffect>& effects = options.effects.effects;
   const bool has_history =
@@ -287,7 +297,8 @@ std::uint64_t bytes_per_pixel(const RenderOptions& options) {
                   [](const ChosenEffect& chosen) { return is_of_frames(*chosen.effect); });
   const bool may_sample = options.method.filter == nullptr;
   const bool may_filter_views = options.method.name() == "filtered-views";
-  return kRenderBytesPerPixel + (has_history ? kHistoryBytesPerPixel : 0) +
+  return kRenderBytesPerPixel + (options.samples > 1 ? kEdgeBytesPerPixel : 0) +
+         (has_history ? kHistoryBytesPerPixel : 0) +
          (layers_of(options) - 1) * kLayerBytesPerPixel +
          (options.method.warps_views()
               ? static_cast<std::uint64_t>(options.sampling.drawn_views) * kWarpedBytesPerPixel
@@ -522,6 +533,10 @@ std::optional<ChosenEffect> checked_effect_of_frames(const RenderOptions& option
   const std::string name = where + ": " + std::string{effect->effect->name};
   if (options.gl != nullptr) {
     throw UsageError(name + " draws its frames in the emulation; leave out --gl");
+  }
+  if (options.samples > 1) {
+    throw UsageError(name +
+                     " makes the picture of frames that have no edges; leave out --multisample");
   }
   if (options.show == Show::image && options.method.filter == nullptr) {
     throw UsageError(name + " makes the picture that a method filters, and --method " +

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 #include "raster/numbers/fixed_point.h"
 #include "raster/pipeline/clip.h"

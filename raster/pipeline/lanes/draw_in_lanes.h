@@ -37,9 +37,6 @@ struct FragmentJob {
   std::size_t layer;  ///< of the tile, or kFurther
 };
 
-/// In place of a layer: VisibilityTile::further.
-inline constexpr std::size_t kFurther = ~std::size_t{0};
-
 /// The stages of a draw, compiled for a vector unit (vertex_lanes.inl, shade_lanes.inl).
 /// Fragments are discarded before the depth test, and those that are left are shaded later.
 template <class VertexStage, class FragmentStage>
@@ -161,6 +158,7 @@ void draw_in_lanes(RenderPass& pass, const DrawState& state, std::span<const std
                    FragmentStage fragment_stage,
                    const LaneStages<VertexStage, FragmentStage>& stages) {
   assert(can_draw_in_lanes(pass, state));
+  assert(!pass.edges || pass.targets.samples == 1);
   assert(indices.size() % 3 == 0);
   assert(!has_layers(pass.targets) || can_peel(pass.targets, state));
   const bool keeps = stages.keep_fragments != nullptr;

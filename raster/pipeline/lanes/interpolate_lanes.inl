@@ -167,8 +167,7 @@ struct BarycentricLanes {
     if (any_huge) weigh_huge(x, y, shift, l);
   }
 
-  void weigh_huge(const Ints& x, const Ints& y, const Ints& shift,
-                  std::array<Floats, 3>& l) const {
+  void weigh_huge(const Ints& x, const Ints& y, const Ints& shift, std::array<Floats, 3>& l) const {
     for (int lane = 0; lane < kLanes; ++lane) {
       const LaneTriangle& t = *(*of_quads)[static_cast<std::size_t>(lane / kQuadPixels)];
       if (t.large == nullptr) continue;

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <span>
 #include <utility>
 
-#include "raster/pipeline/lanes/draw_in_lanes.h"
 #include "raster/pipeline/multisample.h"
 
 namespace softfocus {
@@ -131,10 +131,6 @@ bool share_corner(const LaneTriangle& a, const LaneTriangle& b) {
                    int{a1 == b2} | int{a2 == b0} | int{a2 == b1} | int{a2 == b2};
   return same != 0 && a.front_facing == b.front_facing;
 }
-
-}  // namespace
-
-namespace {
 
 // Sorts further quads by run: a counting sort.
 void sort_further(VisibilityTile& tile, const std::vector<FurtherQuad>& quads) {

@@ -51,6 +51,9 @@ struct VisibleRun {
   std::size_t further_end = 0;
 };
 
+/// In place of a layer's number: VisibilityTile::further.
+inline constexpr std::size_t kFurther = ~std::size_t{0};
+
 /// Pixels of a quad that a triangle shades for a sample, beside those that `ids` of layer 0 tell.
 struct FurtherQuad {
   std::int32_t id;
@@ -108,7 +111,7 @@ void begin_tile(VisibilityTile& tile, const Rectangle& area, const RenderTargets
 /// find_mixed() and list_further().
 void shade_tile(const VisibilityTile& tile);
 /// Lists, for each run, what samples but the first show that no sample before them does. Needs
-/// find_mixed() (resolve_lanes.h).
+/// find_mixed() (mixed_pixels.h).
 void list_further(VisibilityTile& tile);
 
 /// Lists, for each run, the surfaces of edges besides their pixels' centres'; `mixed` are left the

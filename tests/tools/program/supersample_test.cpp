@@ -95,7 +95,8 @@ TEST_CASE("render: --multisample has the same bits in rows, whole, and without a
     CAPTURE(of.front());
     Words words{"render"};
     words.insert(words.end(), of.begin(), of.end());
-    words.insert(words.end(), {"--size", "70x53", "--multisample", "4", "-q"});
+    // Several rows of tiles, with some that show nothing below some that show edges.
+    words.insert(words.end(), {"--size", "70x200", "--multisample", "4", "-q"});
     const auto with = [&](const Words& more) {
       Words all = words;
       all.insert(all.end(), more.begin(), more.end());
@@ -123,6 +124,10 @@ TEST_CASE("render: --multisample refuses what has no place in it") {
   refused({"4", "--method", "auto"}, {"--multisample", "auto", "name a method"});
   refused({"4", "--show", "depth"}, {"--multisample", "--show image or pinhole"});
   refused({"4", "--gl", "emulated"}, {"--multisample", "--gl"});
+  refused({"4", "--profile", "softpipe"}, {"--multisample", "softpipe"});
+  refused({"4", "--method", "two-pass", "--arithmetic", "fixed"},
+          {"--multisample", "--arithmetic"});
+  refused({"4", "--effect", "temporal-aa"}, {"temporal-aa", "--multisample"});
   refused({"4", "--method", "generalised-diffusion", "--sharp-depths", "1:2"},
           {"--multisample", "--sharp-depths"});
 }

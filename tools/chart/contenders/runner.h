@@ -84,7 +84,7 @@ class ChartRunner {
   std::optional<TurnContenders> turns_;
   Image drawn_, large_;  // without depth of field
   FrameParts smooth_;
-  DrawnFrame frame_;     // of the method run last
+  DrawnFrame frame_;  // of the method run last
   Image result_;
   std::string chosen_;
 };

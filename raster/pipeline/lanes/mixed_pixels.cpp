@@ -1,6 +1,6 @@
 #ifndef SOFTFOCUS_ISA
 
-#include "raster/pipeline/lanes/resolve_lanes.h"
+#include "raster/pipeline/lanes/mixed_pixels.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 
 #include "raster/images/texel.h"
 
-#define SOFTFOCUS_KERNELS "raster/pipeline/lanes/resolve_lanes.cpp"
+#define SOFTFOCUS_KERNELS "raster/pipeline/lanes/mixed_pixels.cpp"
 #include "raster/lanes/for_each_isa.inl"
 
 namespace softfocus {
