@@ -251,7 +251,7 @@ Image make_image(Format format, const TargetSize& size) {
   return make_image(format, size.width, size.height * size.samples);
 }
 
-Image read_all(const Bench& bench, const GlTarget& target, std::size_t index) {
+Image read_all([[maybe_unused]] const Bench& bench, const GlTarget& target, std::size_t index) {
 #ifndef SOFTFOCUS_WEBGL
   if (target.samples > 1) return read_samples(bench.gl, target, index);
 #endif

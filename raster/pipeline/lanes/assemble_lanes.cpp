@@ -21,9 +21,12 @@ namespace softfocus {
 void assemble_lanes(Isa isa, const AssembleJob& job, LaneChunk& chunk) {
   // Where in a pixel a triangle is looked for.
   std::array<glm::ivec2, 1 + kMaxSamples> places;
-  auto end = std::ranges::copy(sample_places(job.samples), places.begin()).out;
-  if (job.edge_samples > 1) end = std::ranges::copy(sample_places(job.edge_samples), end).out;
-  SOFTFOCUS_KERNEL(isa, assemble)(job, {places.begin(), end}, chunk);
+  const auto append = [](std::span<const glm::ivec2> from, glm::ivec2* to) {
+    return std::copy(from.begin(), from.end(), to);
+  };
+  glm::ivec2* end = append(sample_places(job.samples), places.data());
+  if (job.edge_samples > 1) end = append(sample_places(job.edge_samples), end);
+  SOFTFOCUS_KERNEL(isa, assemble)(job, {places.data(), end}, chunk);
 }
 
 }  // namespace softfocus

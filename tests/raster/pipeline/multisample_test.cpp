@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/vec3.hpp>
 #include <limits>
 #include <set>
 #include <vector>
@@ -94,10 +95,11 @@ Sampled draw_sampled(const std::vector<VertexOutput<1>>& vertices, int samples, 
 std::vector<VertexOutput<1>> moved(const std::vector<Corner>& corners, const glm::ivec2& by) {
   std::vector<VertexOutput<1>> vertices;
   for (std::size_t i = 0; i < corners.size(); ++i) {
+    const std::size_t triangle = i / 3;
     const glm::vec2 window{static_cast<float>(corners[i].x + by.x) / 256.0f,
                            static_cast<float>(corners[i].y + by.y) / 256.0f};
     vertices.push_back({test::at_window(window, kSampledWidth, kSampledHeight, corners[i].z),
-                        {static_cast<float>(i / 3 + 1)}});
+                        {static_cast<float>(triangle + 1)}});
   }
   return vertices;
 }
