@@ -113,8 +113,8 @@ Vertices random_triangles(test::Random& random, const Target& target, int count,
 }
 
 void check_all_isas(Target target, const DrawState& state, const Vertices& vertices,
-                    const Profile& profile) {
-  for (const int samples : {1, 4, 8}) {
+                    const Profile& profile, const std::vector<int>& sample_counts = {1, 4}) {
+  for (const int samples : sample_counts) {
     if (target.height * samples > kMaxImageSize) continue;
     target.samples = samples;
     const Drawn expected = draw_mixed(Isa::scalar, target, state, vertices, profile);
@@ -317,12 +317,13 @@ int check_edges(const Target& target, const Vertices& vertices,
                 std::span<const std::uint32_t> indices, const Profile& profile) {
   int mixed = 0;
   for (const int samples : {4, 8}) {
+    Edges expected = no_edges(target);
+    bool is_known = false;
     for (const Isa isa : available_isas()) {
       if (isa == Isa::scalar) continue;
       const Edges without = draw_edges(isa, target, 1, vertices, indices, profile);
-      Edges expected = no_edges(target);
       const auto triangles = place_triangles(target, samples, vertices, indices, profile);
-      for (int y = 0; y < target.height; ++y) {
+      for (int y = 0; y < target.height && !is_known; ++y) {
         for (int x = 0; x < target.width; ++x) {
           if (profile.attributes == AttributeSetup::exact_barycentric) {
             store_edge<BarycentricInterpolator<4>>(without.picture, expected, samples, triangles, x,
@@ -333,6 +334,7 @@ int check_edges(const Target& target, const Vertices& vertices,
           }
         }
       }
+      is_known = true;
       for (const std::size_t layers : {std::size_t{1}, std::size_t{3}}) {
         const Edges drawn = draw_edges(isa, target, samples, vertices, indices, profile, layers);
         INFO("isa ", isa_name(isa));
@@ -404,7 +406,7 @@ TEST_CASE("lanes: triangles of every size have the scalar form's bits") {
     test::Random random{501};
     for (const double size : {0.4, 1.5, 6.0, 40.0, 200.0, 3000.0}) {
       check_all_isas(kTarget, {}, random_triangles(random, kTarget, fewer(1500), size),
-                     profile_named(name));
+                     profile_named(name), {1, 4, 8});
     }
   }
 }
