@@ -110,7 +110,8 @@ glm::vec3 filtered_surface(const EdgeRows& rows, int x, const glm::vec4& surface
   const auto row = static_cast<std::size_t>(1 + at.dy);
   const glm::vec3 filtered{texel_of(rows.filtered[row], x + at.dx)};
   const glm::vec3 before{texel_of(rows.scene[row], x + at.dx)};
-  // Not where something else is blurred over it, of which the filter alone knows how much.
+  // Where something nearer is blurred over the pixel, its own colour shows in part, and the filter
+  // alone knows in which.
   const float own = sharpness(settings, surface.w) * kept(before, filtered);
   return own > 0.0f ? filtered + (glm::vec3{surface} - before) * own : filtered;
 }
@@ -159,12 +160,10 @@ void smooth_edges(const DofInput& input, const ImageView& filtered, ThreadPool& 
   std::vector<std::vector<SmoothPixel>> changed(static_cast<std::size_t>(height));
   const ConstImageView before = filtered;
   for_each_row(pool, height, kRowsAtOnce, [&](int y) {
-    EdgeRows rows{.scene = rows_about(input.scene, y),
-                  .filtered = rows_about(before, y),
-                  .other = {},
-                  .coverage = {}};
-    rows.other = row<std::uint16_t>(input.edges.other, y);
-    rows.coverage = row<std::uint8_t>(input.edges.coverage, y);
+    const EdgeRows rows{.scene = rows_about(input.scene, y),
+                        .filtered = rows_about(before, y),
+                        .other = row<std::uint16_t>(input.edges.other, y),
+                        .coverage = row<std::uint8_t>(input.edges.coverage, y)};
     smooth_row(rows, input.settings, input.profile.half_store,
                changed[static_cast<std::size_t>(y)]);
   });

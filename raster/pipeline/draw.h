@@ -167,12 +167,6 @@ inline Samples alpha_coverage(float alpha, int count) {
   return kept;
 }
 
-template <class FragmentStage>
-constexpr bool is_centroid() {
-  if constexpr (requires { FragmentStage::kCentroid; }) return FragmentStage::kCentroid;
-  return false;
-}
-
 // `covered`: the samples of pixel (x, y) that the triangle covers.
 template <class Interpolator, class Draw, std::size_t N>
 void shade_fragment(const Draw& draw, const Triangle<N>& triangle, const Interpolator& interpolator,

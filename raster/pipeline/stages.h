@@ -52,6 +52,13 @@ bool discards(const FragmentStage& stage) {
   return FragmentStage::kDiscards;
 }
 
+/// Whether its varyings are centroid ones.
+template <class FragmentStage>
+constexpr bool is_centroid() {
+  if constexpr (requires { FragmentStage::kCentroid; }) return FragmentStage::kCentroid;
+  return false;
+}
+
 /// How many varyings a draw has.
 template <class FragmentStage>
 std::size_t varying_count(const FragmentStage& stage) {

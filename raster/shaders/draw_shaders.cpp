@@ -340,8 +340,9 @@ class FragmentBatches {
       put(shading, x + (i & 1), y + (i >> 1), covered[static_cast<std::size_t>(i)]);
     }
     bool any = false;
-    for (std::size_t i = before; i < before + 4; ++i)
+    for (std::size_t i = before; i < before + 4; ++i) {
       any = any || memory_.fragments[i].covered != 0;
+    }
     if (!any) memory_.fragments.resize(before);
     if (memory_.fragments.size() == lanes_) flush();
   }
@@ -369,7 +370,7 @@ class FragmentBatches {
       fragment.depths[s] =
           places.size() == 1 ? fragment.depth : depth_at(shading.first.pixel(x, y, places[s]));
     }
-    if (!draw_.tests_come_last) fragment.covered = tested(fragment, fragment.depths);
+    if (!draw_.tests_come_last) fragment.covered = tested(fragment);
     for (std::size_t i = 0; i < draw_.inputs.size(); ++i) {
       memory_.inputs[i * lanes_ + lane] = input(shading, pixel, i, memory_.fragments.back());
     }
@@ -377,14 +378,14 @@ class FragmentBatches {
   }
 
   /// Those of its samples that pass.
-  draw_detail::Samples tested(const Waiting& fragment,
-                              const std::array<float, kMaxSamples>& depths) const {
+  draw_detail::Samples tested(const Waiting& fragment) const {
     const int count = draw_.targets.samples;
     draw_detail::Samples passing = 0;
     for (int s = 0; s < count; ++s) {
       if (draw_detail::has_sample(fragment.covered, s) &&
           draw_detail::passes_tests(draw_, fragment.x, fragment.y * count + s,
-                                    depths[static_cast<std::size_t>(s)], fragment.front_facing)) {
+                                    fragment.depths[static_cast<std::size_t>(s)],
+                                    fragment.front_facing)) {
         passing |= 1u << s;
       }
     }
@@ -460,7 +461,7 @@ class FragmentBatches {
       if (draw_.state.alpha_to_coverage && count > 1) {
         fragment.covered &= draw_detail::alpha_coverage(colour_of(0, lane).w, count);
       }
-      fragment.covered = tested(fragment, fragment.depths);
+      fragment.covered = tested(fragment);
       if (fragment.covered == 0) return;
     }
     const int x = fragment.x, y = fragment.y;

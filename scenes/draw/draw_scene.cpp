@@ -89,6 +89,11 @@ bool has_transparent(const Scene& scene) {
   });
 }
 
+bool has_shaders(const Scene& scene) {
+  return std::any_of(scene.materials.begin(), scene.materials.end(),
+                     [](const Material& material) { return material.shaders != nullptr; });
+}
+
 std::vector<SurfaceDraw> surface_draws(const Scene& scene, const CameraMatrices& camera,
                                        double frame) {
   std::vector<SurfaceDraw> draws;
@@ -469,12 +474,8 @@ void make_sized(Image& image, int width, int height, Format format = Format::rgb
 
 // Whether all opaque draws of a scene are in lanes, and in one pass.
 bool draws_in_lanes(const PreparedScene& prepared) {
-  const Scene& scene = *prepared.scene;
-  const bool has_shaders =
-      std::any_of(scene.materials.begin(), scene.materials.end(),
-                  [](const Material& material) { return material.shaders != nullptr; });
-  return !has_shaders && can_draw_in_lanes(prepared.pass, DrawState{}) &&
-         chunks_of_scene(scene) <= kPassChunks;
+  return !has_shaders(*prepared.scene) && can_draw_in_lanes(prepared.pass, DrawState{}) &&
+         chunks_of_scene(*prepared.scene) <= kPassChunks;
 }
 
 // Of a picture that has been drawn without them.

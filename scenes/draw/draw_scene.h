@@ -44,6 +44,9 @@ bool is_transparent(const Material& material, const Mesh& mesh);
 /// Whether any of a scene's objects is.
 bool has_transparent(const Scene& scene);
 
+/// Whether any of its materials has shaders of a user's.
+bool has_shaders(const Scene& scene);
+
 /// One for each of the scene's objects, in the order of drawing. Those of opacity 0 show nothing:
 /// callers leave them out.
 std::vector<SurfaceDraw> surface_draws(const Scene& scene, const CameraMatrices& camera,

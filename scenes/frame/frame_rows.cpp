@@ -45,10 +45,7 @@ std::string why_whole(const Shot& shot, Isa isa) {
   if (shot.lens && shot.lens->cuts_no_circle) return "its largest circle is looked for";
   if (has_transparent(scene)) return "the scene has transparent surfaces";
   if (has_shadows(scene)) return "the scene has shadows";
-  const bool has_shaders =
-      std::any_of(scene.materials.begin(), scene.materials.end(),
-                  [](const Material& material) { return material.shaders != nullptr; });
-  if (has_shaders) return "materials have shaders";
+  if (has_shaders(scene)) return "materials have shaders";
   if (chunks_of_scene(scene) > kPassChunks) return "the scene is drawn in several passes";
   const bool in_lanes = isa != Isa::scalar && shot.profile.coverage == Coverage::edge_functions &&
                         shot.profile.attributes != AttributeSetup::planes_by_quad;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <glm/vec3.hpp>
 #include <string_view>
 #include <vector>
 
@@ -136,6 +137,33 @@ TEST_CASE("smooth edges: surfaces of one depth keep the filter's colour, and mix
   for (int k = 0; k < 3; ++k) {
     CHECK(texel[k] == doctest::Approx(a[k] + 0.4f * (b[k] - a[k])).epsilon(0.002));
   }
+}
+
+TEST_CASE(
+    "smooth edges: what shadows change, the other surface takes from the pixel that shows it") {
+  EdgePicture picture = edge_picture();
+  for (int y = 0; y < kEdgeHeight; ++y) {
+    for (int x = 0; x < kEdgeWidth; ++x) {
+      const glm::vec4 lit = load_texel(picture.other, x, y);
+      store_texel(picture.other, x, y, glm::vec4{glm::vec3{lit} * 2.0f, lit.w}, {});
+    }
+  }
+  ThreadPool pool{2};
+  const Image other = picture.other;
+  take_shown_colours(picture.scene, picture.coverage, picture.other, pool);
+  int taken = 0;
+  for (int y = 0; y < kEdgeHeight; ++y) {
+    for (int x = 0; x < kEdgeWidth; ++x) {
+      const glm::vec4 texel = load_texel(picture.other, x, y);
+      if (row<std::uint8_t>(picture.coverage, y)[static_cast<std::size_t>(x)] == 0) {
+        CHECK(texel == load_texel(other, x, y));
+        continue;
+      }
+      ++taken;
+      CHECK(texel == (load_texel(picture.scene, x, y) == kNear ? kFar : kNear));
+    }
+  }
+  CHECK(taken > 10);
 }
 
 TEST_CASE("smooth edges: the input is checked") {

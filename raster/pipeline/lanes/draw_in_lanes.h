@@ -159,6 +159,7 @@ void draw_in_lanes(RenderPass& pass, const DrawState& state, std::span<const std
                    const LaneStages<VertexStage, FragmentStage>& stages) {
   assert(can_draw_in_lanes(pass, state));
   assert(!pass.edges || pass.targets.samples == 1);
+  static_assert(!is_centroid<FragmentStage>(), "lanes have a pixel's varyings at its centre");
   assert(indices.size() % 3 == 0);
   assert(!has_layers(pass.targets) || can_peel(pass.targets, state));
   const bool keeps = stages.keep_fragments != nullptr;

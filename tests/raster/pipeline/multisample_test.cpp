@@ -168,6 +168,50 @@ TEST_CASE("alpha becomes coverage: sample s of n where it is above s / n, and al
   }
 }
 
+TEST_CASE("stencil values are each sample's own") {
+  test::Random random{703};
+  const std::vector<Corner> mask = random_corners(random, 40, 3000);
+  const std::vector<Corner> all{
+      {-100000, -100000, 0.5f}, {100000, -100000, 0.5f}, {0, 200000, 0.5f}};
+  for (const int samples : {4, 8}) {
+    const Sampled expected = draw_sampled(moved(mask, {}), samples, {}, FlatColour{});
+    Sampled images = cleared(samples);
+    Image stencil = make_image(Format::r8, kSampledWidth, kSampledHeight * samples);
+    RenderPass pass;
+    pass.targets = {.colour = {&images.colour},
+                    .depth = &images.depth,
+                    .stencil = &stencil,
+                    .behind = {},
+                    .samples = samples};
+    DrawState marks, marked;
+    marks.cull = marked.cull = Cull::none;
+    marks.depth = marked.depth = std::nullopt;
+    const StencilFace set{.reference = 7, .on_pass = StencilOp::replace};
+    marks.stencil = StencilState{set, set};
+    marks.colour[0].write = {false, false, false, false};
+    const StencilFace test{.test = Compare::equal, .reference = 7};
+    marked.stencil = StencilState{test, test};
+    const auto of_mask = moved(mask, {}), of_all = moved(all, {});
+    const auto mask_indices = test::indices_up_to(of_mask.size());
+    const auto all_indices = test::indices_up_to(of_all.size());
+    draw(pass, marks, mask_indices, static_cast<std::uint32_t>(of_mask.size()),
+         test::ListedVertices<1>{&of_mask}, FlatColour{});
+    draw(pass, marked, all_indices, 3, test::ListedVertices<1>{&of_all}, FlatColour{});
+    ThreadPool pool{1};
+    finish(pass, pool);
+    int marked_samples = 0, different = 0;
+    for (int y = 0; y < images.colour.height; ++y) {
+      for (int x = 0; x < kSampledWidth; ++x) {
+        const bool is_covered = load_texel(expected.colour, x, y).x > 0.0f;
+        different += (load_texel(images.colour, x, y).x > 0.0f) != is_covered;
+        marked_samples += is_covered;
+      }
+    }
+    CHECK(different == 0);
+    CHECK(marked_samples > 1000);
+  }
+}
+
 TEST_CASE("centroid varyings come from a covered sample where the centre is not covered") {
   // Its varying is the distance from the right side in pixels: below 0 beyond it.
   std::vector<VertexOutput<1>> vertices;

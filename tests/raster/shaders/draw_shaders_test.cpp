@@ -151,10 +151,13 @@ void main() {
 }
 
 struct Pictures {
-  Image first = make_image(Format::rgba32f, kWidth, kHeight);
-  Image second = make_image(Format::rgba32f, kWidth, kHeight);
-  Image depth = make_image(Format::r32f, kWidth, kHeight);
-  RenderTargets targets() { return {.colour = {&first, &second}, .depth = &depth}; }
+  int samples = 1;
+  Image first = make_image(Format::rgba32f, kWidth, kHeight* samples);
+  Image second = make_image(Format::rgba32f, kWidth, kHeight* samples);
+  Image depth = make_image(Format::r32f, kWidth, kHeight* samples);
+  RenderTargets targets() {
+    return {.colour = {&first, &second}, .depth = &depth, .samples = samples};
+  }
   RenderPass pass(const Profile& profile, Isa isa) {
     return {.targets = targets(),
             .profile = profile,
@@ -178,7 +181,7 @@ int differing_bytes(const Pictures& a, const Pictures& b) {
 }
 
 template <bool discarding, bool differing>
-void compare_to_cpp(std::initializer_list<const char*> profiles) {
+void compare_to_cpp(std::initializer_list<const char*> profiles, int samples = 1) {
   const ShaderDraw draw_by_shaders = draw_of(kVertex, fragment_text(discarding, differing));
   test::Random random{7};
   for (const char* const name : profiles) {
@@ -191,7 +194,8 @@ void compare_to_cpp(std::initializer_list<const char*> profiles) {
       DrawState state;
       state.cull = cull;
       if (cull == Cull::back) state.provoking_vertex = ProvokingVertex::first;
-      Pictures by_cpp;
+      state.alpha_to_coverage = cull == Cull::back;
+      Pictures by_cpp{.samples = samples};
       {
         ThreadPool pool{1};
         RenderPass pass = by_cpp.pass(profile, Isa::scalar);
@@ -205,7 +209,7 @@ void compare_to_cpp(std::initializer_list<const char*> profiles) {
             ShaderDraw with = draw_by_shaders;
             with.attributes = attributes_of(vertices);
             with.lanes = lanes;
-            Pictures by_shaders;
+            Pictures by_shaders{.samples = samples};
             ThreadPool pool{threads, isa};
             RenderPass pass = by_shaders.pass(profile, isa);
             draw_shaders(pass, state, indices, count, with);
@@ -228,6 +232,14 @@ TEST_CASE("shaders draw the bits of C++ stages with their arithmetic") {
 TEST_CASE("shaders that discard draw the bits of stages that do") {
   if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
   compare_to_cpp<true, false>({"ieee", "softpipe"});
+}
+
+TEST_CASE("shaders draw samples as stages do, and cover by alpha") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  for (const int samples : {4, 8}) {
+    compare_to_cpp<false, false>({"ieee", "llvmpipe"}, samples);
+    compare_to_cpp<true, true>({"ieee"}, samples);
+  }
 }
 
 TEST_CASE("coarse derivatives of varyings are those of stages, also of pixels that discard") {

@@ -6,6 +6,7 @@
 
 #include "dof/halve.h"
 #include "raster/images/texel.h"
+#include "raster/shaders/glsl/glsl.h"
 #include "tests/support/cli_refused.h"
 #include "tools/pictures/image_file.h"
 
@@ -22,6 +23,13 @@ nlohmann::json drawn(const std::string& size, const std::string& output, const W
   REQUIRE(run.status == 0);
   CHECK(run.err == "");
   return nlohmann::json::parse(run.out);
+}
+
+// That render refuses these words of an option, naming `named`.
+void check_refused_option(const std::string& option, Words words, const Words& named) {
+  const TemporaryDirectory pictures;
+  words.insert(words.begin(), {"render", "figures", "-o", pictures.file("a.npy"), option});
+  check_refused(pictures, words, 2, named);
 }
 
 double flip(const std::string& a, const std::string& b) {
@@ -113,11 +121,57 @@ TEST_CASE("render: --multisample has the same bits in rows, whole, and without a
   }
 }
 
-TEST_CASE("render: --multisample refuses what has no place in it") {
+TEST_CASE("render: --multisample makes edges smooth in shadow, and of materials with shaders") {
   const TemporaryDirectory pictures;
-  const auto refused = [&](Words more, const Words& named) {
-    more.insert(more.begin(), {"render", "figures", "-o", pictures.file("a.npy"), "--multisample"});
-    check_refused(pictures, more, 2, named);
+  const std::string truth = pictures.file("truth.npy"), ours = pictures.file("ours.npy");
+  write_file(pictures.file("red.frag"),
+             "#version 330\nout vec4 c;\nvoid main() { c = vec4(1, 0, 0, 1); }\n");
+  write_file(pictures.file("shaders.toml"),
+             "background = [0.1, 0.2, 0.3]\n[camera]\nposition = [0, 1, 2]\ntarget = [0, 0, 0]\n"
+             "[material.m]\nfragment = \"red.frag\"\n"
+             "[[object]]\nshape = \"torus\"\nring_radius = 0.5\ntube_radius = 0.2\n"
+             "material = \"m\"\n");
+  for (const Words& of :
+       {Words{"cube-room", "--shadows", "projected"}, Words{pictures.file("shaders.toml")}}) {
+    CAPTURE(of.front());
+    const auto render = [&](const std::string& output, const Words& more) {
+      Words words{"render"};
+      words.insert(words.end(), of.begin(), of.end());
+      words.insert(words.end(), {"--size", "96x96", "--coc-scale", "0", "-q", "-o", output});
+      words.insert(words.end(), more.begin(), more.end());
+      const ProgramRun run = run_program(words);
+      CAPTURE(run.err);
+      REQUIRE(run.status == 0);
+    };
+    if (of.size() == 1 && !missing_glsl().empty()) continue;
+    render(truth, {"--method", "accumulation", "--samples", "256", "--jitter"});
+    render(ours, {"--method", "disc-layers"});
+    const double jagged = flip(ours, truth);
+    render(ours, {"--method", "disc-layers", "--multisample", "8"});
+    // Edges of shadows themselves keep stairs.
+    CHECK(flip(ours, truth) < (of.size() > 1 ? 0.85 : 0.4) * jagged);
+  }
+}
+
+TEST_CASE("render: --multisample of many frames gives each frame's own edges") {
+  const TemporaryDirectory pictures;
+  const auto render = [&](const Words& more) {
+    Words words{"render",  "crossing",      "--size", "64x48", "--method",
+                "layered", "--multisample", "4",      "-q"};
+    words.insert(words.end(), more.begin(), more.end());
+    REQUIRE(run_program(words).status == 0);
+  };
+  render({"--frames", "0..2", "-o", pictures.file("f_%d.npy")});
+  for (const char* frame : {"0", "1", "2"}) {
+    render({"--frame", frame, "-o", pictures.file("one.npy")});
+    CHECK(read_file(pictures.file("one.npy")) ==
+          read_file(pictures.file(std::string{"f_"} + frame + ".npy")));
+  }
+}
+
+TEST_CASE("render: --multisample refuses what has no place in it") {
+  const auto refused = [](const Words& words, const Words& named) {
+    check_refused_option("--multisample", words, named);
   };
   refused({"2"}, {"--multisample '2'", "1, 4 or 8"});
   refused({"4", "--method", "accumulation"}, {"--multisample", "accumulation", "--jitter"});
@@ -133,10 +187,8 @@ TEST_CASE("render: --multisample refuses what has no place in it") {
 }
 
 TEST_CASE("render: --supersample refuses what has no place in it") {
-  const TemporaryDirectory pictures;
-  const auto refused = [&](Words more, const Words& named) {
-    more.insert(more.begin(), {"render", "figures", "-o", pictures.file("a.npy"), "--supersample"});
-    check_refused(pictures, more, 2, named);
+  const auto refused = [](const Words& words, const Words& named) {
+    check_refused_option("--supersample", words, named);
   };
   refused({"3"}, {"--supersample '3'", "1 or 2"});
   refused({"2", "--method", "accumulation"}, {"--supersample", "accumulation", "--jitter"});

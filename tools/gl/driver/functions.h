@@ -35,11 +35,11 @@ using GLsizeiptr = std::ptrdiff_t;
   X(void, BindTexture, (GLenum target, GLuint texture), (target, texture))                        \
   X(void, BindVertexArray, (GLuint array), (array))                                               \
   X(void, BlendEquation, (GLenum equation), (equation))                                           \
+  X(void, BlendFunc, (GLenum source, GLenum destination), (source, destination))                  \
   X(void, BlitFramebuffer,                                                                        \
     (GLint x, GLint y, GLint x_end, GLint y_end, GLint to_x, GLint to_y, GLint to_x_end,          \
      GLint to_y_end, GLbitfield buffers, GLenum filter),                                          \
     (x, y, x_end, y_end, to_x, to_y, to_x_end, to_y_end, buffers, filter))                        \
-  X(void, BlendFunc, (GLenum source, GLenum destination), (source, destination))                  \
   X(void, BufferData, (GLenum target, GLsizeiptr size, const void* data, GLenum usage),           \
     (target, size, data, usage))                                                                  \
   X(GLenum, CheckFramebufferStatus, (GLenum target), (target))                                    \
