@@ -11,6 +11,7 @@
 #include "scenes/load/load_scene.h"
 #include "scenes/scene.h"
 #include "tests/support/raster_helpers.h"
+#include "tests/support/scene_texts.h"
 
 using namespace softfocus;
 
@@ -52,6 +53,32 @@ TEST_CASE("a frame by rows: the bits of make_frame(), in every unit, by any numb
           CHECK(drawn == shot.height);
           step = step * 7 + 30;
         }
+      }
+    }
+  }
+}
+
+TEST_CASE("a frame by rows: smooth edges too, and none of a band before where nothing is drawn") {
+  const Scene figures = load_scene("figures", scene_search_path({}));
+  // In the upper half alone.
+  const Scene ball = test::read(
+      "background = [0.2, 0.4, 0.8]\n[camera]\nposition = [0, 0, 3]\ntarget = [0, 0, 0]\n"
+      "[material.m]\ndiffuse = [1, 0.3, 0]\n[[object]]\nshape = \"sphere\"\nradius = 0.3\n"
+      "position = [0, 0.8, 0]\nmaterial = \"m\"\n");
+  ThreadPool pool{2, Isa::baseline};
+  for (const Scene* scene : {&figures, &ball}) {
+    for (const char* const method : {"two-pass", "pinhole"}) {
+      for (const int height : {1, 2, 63, 65, 300}) {
+        Shot shot = shot_of(*scene, 0.0, 90, height, find_method_choice(method));
+        shot.samples = height == 65 ? 8 : 4;
+        CAPTURE(method);
+        CAPTURE(height);
+        REQUIRE(why_whole(shot, Isa::baseline) == "");
+        int drawn = 0;
+        const Image rows = rows_of(shot, pool, 1 + height / 3, drawn);
+        CHECK(equal(rows, make_frame(shot, pool).picture));
+        shot.samples = 1;
+        if (height > 2) CHECK_FALSE(equal(rows, make_frame(shot, pool).picture));
       }
     }
   }

@@ -76,9 +76,8 @@ struct TileLayer {
 };
 
 inline std::byte* texel_at(const TileLayer& layer, const glm::ivec2& at) {
-  constexpr std::size_t kTexelBytes = bytes_per_texel(Format::rgba16f);
   return layer.texels + static_cast<std::size_t>(at.y) * layer.stride_bytes +
-         static_cast<std::size_t>(at.x) * kTexelBytes;
+         static_cast<std::size_t>(at.x) * bytes_per_texel(Format::rgba16f);
 }
 
 /// What is shaded next.
