@@ -11,13 +11,30 @@
 // is in focus, and vanishes in the blur.
 
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "dof/dof.h"
+#include "raster/pipeline/multisample.h"
 
 namespace softfocus {
+
+/// Whether an edge lies between a and b, of four neighbours in a row, each given as 1 / depth.
+/// Along a plane 1 / depth is linear: at an edge it differs by more than twice what it does from
+/// either of the two to the pixel beyond, which the picture may not have.
+inline bool is_step(std::optional<float> before, float a, float b, std::optional<float> behind) {
+  if (is_one_surface(a, b)) return false;
+  const float step = std::fabs(a - b);
+  const bool has_both = before && behind;
+  const float slope = has_both ? std::fmin(std::fabs(*before - a), std::fabs(b - *behind))
+                      : before ? std::fabs(*before - a)
+                      : behind ? std::fabs(b - *behind)
+                               : 0.0f;
+  return step > 2.0f * slope;
+}
 
 /// Rows of an input and of its filtered picture. The first and the last of three are the row above
 /// and below; at the picture's border they are the row itself.

@@ -5,8 +5,10 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
+#include "dof/smooth_edges.h"
 #include "raster/images/texel.h"
 
 namespace softfocus {
@@ -114,6 +116,35 @@ Floats edge_reaches(const Floats& radii, const Size& size) {
   return reaches;
 }
 
+/// Calls `mark(index)` for pixels on outlines of what is in focus, some twice.
+template <class Mark>
+void for_each_on_edge(const Image& scene, const Floats& radii, float focus_px, const Mark& mark) {
+  const Size size{scene.width, scene.height};
+  const auto look = [&](int x, int y, int dx, int dy) {
+    const auto inverse_depth = [&](int i) -> std::optional<float> {
+      const int u = x + i * dx, v = y + i * dy;
+      if (u < 0 || v < 0 || u >= size.width || v >= size.height) return {};
+      return 1.0f /
+             half_to_float(row<std::uint16_t>(scene, v)[4 * static_cast<std::size_t>(u) + 3]);
+    };
+    const auto next = inverse_depth(1);
+    if (!next) return;
+    const float here = *inverse_depth(0);
+    if (is_one_surface(here, *next)) return;
+    const std::size_t a = index_of(size, x, y), b = index_of(size, x + dx, y + dy);
+    if (!(std::fabs(radii[here > *next ? a : b]) <= focus_px)) return;
+    if (!is_step(inverse_depth(-1), here, *next, inverse_depth(2))) return;
+    mark(a);
+    mark(b);
+  };
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      look(x, y, 1, 0);
+      look(x, y, 0, 1);
+    }
+  }
+}
+
 /// The discs of all reaches, drawn as spans: each adds 1 where it begins and takes it
 /// away behind its end, so that a running sum tells the pixels that any disc covers.
 class Band {
@@ -171,6 +202,7 @@ std::string_view region_name(Region region) {
     case Region::near_field: return "near";
     case Region::focus: return "focus";
     case Region::far_field: return "far";
+    case Region::edge: return "edge";
   }
   return "";
 }
@@ -183,7 +215,7 @@ float fitting_focus_px(const Image& scene, const PixelCoc& coc, const Image& lab
     const auto of_row = row<std::uint8_t>(labels, y);
     for (int x = 0; x < scene.width; ++x) {
       const auto region = static_cast<Region>(of_row[static_cast<std::size_t>(x)]);
-      if (region == Region::silhouette) continue;
+      if (region == Region::silhouette || region == Region::edge) continue;
       const std::size_t here = index_of({scene.width, scene.height}, x, y);
       least = std::min(least, std::fabs(radii[here]));
     }
@@ -209,6 +241,10 @@ Image label_regions(const Image& scene, const PixelCoc& coc, float focus_px) {
     }
   }
   band.for_each([&](int x, int y) { label(x, y, Region::silhouette); });
+  for_each_on_edge(scene, radii, focus_px, [&](std::size_t i) {
+    const auto at = static_cast<int>(i);
+    label(at % size.width, at / size.width, Region::edge);
+  });
   return labels;
 }
 

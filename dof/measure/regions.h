@@ -38,13 +38,14 @@ enum class Region : std::uint8_t {
   near_field,  ///< nearer than focus and blurred
   focus,       ///< in focus: must stay as it is
   far_field,   ///< farther than focus and blurred
+  edge,        ///< on the outline of something in focus: stairs
 };
-inline constexpr std::size_t kRegions = 4;
+inline constexpr std::size_t kRegions = 5;
 
-inline constexpr std::array<Region, kRegions> kAllRegions{Region::silhouette, Region::near_field,
-                                                          Region::focus, Region::far_field};
+inline constexpr std::array<Region, kRegions> kAllRegions{
+    Region::silhouette, Region::near_field, Region::focus, Region::far_field, Region::edge};
 
-/// "silhouette", "near", "focus" or "far".
+/// "silhouette", "near", "focus", "far" or "edge".
 std::string_view region_name(Region region);
 
 /// Radius in pixels up to which a pixel is in focus: a disc of it covers the pixel and
@@ -61,8 +62,12 @@ inline bool is_depth(float depth_m) { return depth_m > 0.0f; }
 /// A label, of Region, for each pixel of an RGBA16F picture with depths in alpha: an image
 /// of r8. Every pixel nearer to an edge in depth than the larger radius on its two sides,
 /// at least 1, is of its silhouette band, measured from the centres of the pixels beside the
-/// edge. The rest is in focus, near or far by its own radius, in focus up to `focus_px`. Needs
-/// is_depth() everywhere.
+/// edge. The rest is in focus, near or far by its own radius, in focus up to `focus_px`.
+///
+/// Before all these: two neighbours of different surfaces (is_one_surface()) are on an edge if the
+/// nearer one is in focus. What slopes is one surface: along a plane 1 / depth is linear, so it
+/// differs at an edge by more than twice what it does from either of the two to the pixel beyond.
+/// Needs is_depth() everywhere.
 Image label_regions(const Image& scene, const PixelCoc& coc, float focus_px = kFocusRadiusPx);
 
 /// kFocusRadiusPx, or, of a picture whose labels have nothing so sharp, as much more than the

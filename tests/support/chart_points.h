@@ -12,7 +12,8 @@ inline ChartPoint chart_point(const std::string& method, std::size_t setting,
   ChartPoint point{.entry = chart_entries(method, 1024, false).at(setting)};
   point.picture_hash = 0x123;
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  point.errors = {30.5, 0.875, flip, {0.5, kNone, 0, 0.25}, 2 * flip, {0.75, kNone, 0, 0.5}};
+  point.errors = {
+      30.5, 0.875, flip, {0.5, kNone, 0, 0.25, 0.125}, 2 * flip, {0.75, kNone, 0, 0.5, 0.375}};
   point.worst = {3, 4, 16};
   point.pictures = {"AAAA", "BBBB", "CCCC", "DDDD", "EEEE"};
   if (point.entry.filter != nullptr) point.times.filter_ms.assign(frame_ms.size(), 2.5);

@@ -266,6 +266,7 @@ Rendered make_rendered(const RenderOptions& options, const Scene& scene, double 
   const Shot shot = asked_shot(options, scene, sequence);
   RenderRecord record{.scene_name = scene.name,
                       .scene_title = scene.title,
+                      .samples = shot.samples,
                       .triangles = triangle_count(scene),
                       .camera = scene.camera,
                       .effects = shot.effects,

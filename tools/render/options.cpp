@@ -217,35 +217,43 @@ void check_supersample(const RenderOptions& options) {
   }
 }
 
-void check_multisample(const RenderOptions& options) {
-  if (options.samples == 1) return;
+/// Why a pixel has one sample, in words that go behind the option's name; empty if it may have
+/// several.
+std::string why_one_sample(const RenderOptions& options) {
   if (options.show == Show::coc || options.show == Show::depth) {
-    throw UsageError(
-        "--multisample: a map shows one surface a pixel; give --show image or pinhole");
+    return ": a map shows one surface a pixel; give --show image or pinhole";
+  }
+  if (options.show == Show::pinhole && options.layers.value_or(1) > 1) {
+    return " and --layers exclude each other: a layer shows one surface a pixel";
   }
   if (options.profile.coverage != Coverage::edge_functions) {
-    throw UsageError("--multisample and --profile " + options.profile_name +
-                     " exclude each other: softpipe has one sample a pixel");
+    return " and --profile " + options.profile_name +
+           " exclude each other: softpipe has one sample a pixel";
   }
   if (options.arithmetic != Arithmetic::floats) {
-    throw UsageError("--multisample and --arithmetic exclude each other: edges are of floats");
+    return " and --arithmetic exclude each other: edges are of floats";
   }
   if (options.gl != nullptr) {
-    throw UsageError(
-        "--multisample and --gl exclude each other: the driver's picture has no edges");
+    return " and --gl exclude each other: the driver's picture has no edges";
   }
   if (!options.sharp_depths.empty()) {
-    throw UsageError(
-        "--multisample and --sharp-depths exclude each other: radii are of one surface a pixel");
+    return " and --sharp-depths exclude each other: radii are of one surface a pixel";
   }
-  if (options.show != Show::image) return;
-  if (options.method.is_auto()) {
-    throw UsageError("--multisample and --method auto exclude each other; name a method");
-  }
-  if (options.method.of_scene != nullptr) {
-    throw UsageError("--multisample and --method " + std::string{options.method.name()} +
-                     " exclude each other: its views can look from all over a pixel; give "
-                     "--jitter");
+  if (options.show != Show::image) return "";
+  if (options.method.is_auto()) return " and --method auto exclude each other; name a method";
+  if (options.method.of_scene == nullptr) return "";
+  return " and --method " + std::string{options.method.name()} +
+         " exclude each other: its views can look from all over a pixel; give --jitter";
+}
+
+void settle_samples(RenderOptions& options, const CLI::App& parser) {
+  options.samples_are_given = is_given(parser, "--multisample");
+  const std::string why = why_one_sample(options);
+  if (!options.samples_are_given) {
+    // A driver's profile is for its picture.
+    if (!why.empty() || options.profile != Profile{}) options.samples = 1;
+  } else if (options.samples > 1 && !why.empty()) {
+    throw UsageError("--multisample" + why);
   }
 }
 
@@ -412,7 +420,7 @@ void complete(RenderOptions& options, const CLI::App& parser) {
   }
   if (options.shard) check_shard_count(*options.shard, options.sampling.samples);
   check_supersample(options);
-  check_multisample(options);
+  settle_samples(options, parser);
   if (!all_effects(options.effects).empty() &&
       (options.show == Show::coc || options.show == Show::depth)) {
     throw UsageError(
@@ -481,13 +489,13 @@ ShotLens asked_lens(const RenderOptions& options, const Scene& scene) {
 }  // namespace
 
 Shot asked_shot(const RenderOptions& options, const Scene& scene, FrameSequence& sequence) {
-  checked_effect_of_frames(options, scene);
+  const bool is_of_frames = checked_effect_of_frames(options, scene).has_value();
   Shot shot{.scene = &scene,
             .frame = options.frame,
             .width = options.size.width,
             .height = options.size.height,
             .supersample = options.supersample,
-            .samples = options.samples,
+            .samples = is_of_frames ? 1 : options.samples,
             .show = options.show,
             .method = options.method,
             .arithmetic = options.arithmetic,
@@ -534,7 +542,7 @@ std::optional<ChosenEffect> checked_effect_of_frames(const RenderOptions& option
   if (options.gl != nullptr) {
     throw UsageError(name + " draws its frames in the emulation; leave out --gl");
   }
-  if (options.samples > 1) {
+  if (options.samples_are_given && options.samples > 1) {
     throw UsageError(name +
                      " makes the picture of frames that have no edges; leave out --multisample");
   }

@@ -35,7 +35,8 @@ struct RenderOptions {
   PictureSize size;
   EffectOptions effects;  ///< on the finished picture
   int supersample = 1;    ///< what is drawn and filtered has so many times the width and height
-  int samples = 1;        ///< of a pixel
+  int samples = 4;        ///< of a pixel; complete() makes it 1 where edges have no place
+  bool samples_are_given = false;
   double frame = 0.0;
   std::optional<ShadowKind> shadows;  ///< of all lights, in place of what the scene says
   MapOptions map;

@@ -152,7 +152,7 @@ std::string text_report(const RenderOptions& options, const RenderRecord& record
     text += line("Supersample",
                  std::to_string(options.supersample) + " x " + std::to_string(options.supersample));
   }
-  if (options.samples > 1) text += line("Multisample", std::to_string(options.samples));
+  if (record.samples > 1) text += line("Multisample", std::to_string(record.samples));
   text += line("Triangles", std::to_string(record.triangles));
   text += line("Method", std::string{options.method.name()});
   if (options.arithmetic != Arithmetic::floats) {
@@ -207,7 +207,7 @@ std::string json_report(const RenderOptions& options, const RenderRecord& record
       {"width", options.size.width},
       {"height", options.size.height},
       {"supersample", options.supersample},
-      {"multisample", options.samples},
+      {"multisample", record.samples},
       {"triangles", record.triangles},
       {"method", options.method.name()},
       {"show", name_of(options.show)},

@@ -66,7 +66,10 @@ TEST_CASE("regions: an edge in depth has a band as wide as its larger radius on 
   for (int y = 0; y < 5; ++y) {
     for (int x = 0; x < 40; ++x) {
       CAPTURE(x);
-      const Region right = x < 15 ? Region::focus : x < 25 ? Region::silhouette : Region::far_field;
+      const Region right = x == 19 || x == 20 ? Region::edge
+                           : x < 15           ? Region::focus
+                           : x < 25           ? Region::silhouette
+                                              : Region::far_field;
       CHECK(label_at(labels, x, y) == right);
     }
   }
@@ -124,6 +127,30 @@ TEST_CASE("regions: an edge of large circles takes in the whole picture") {
   CHECK(all(labels, Region::silhouette));
 }
 
+TEST_CASE("regions: edges are beside outlines of what is in focus, whatever lies behind") {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const auto edges = [](int width, int height, const auto& depth_at) {
+    const Image labels = label_regions(with_depths(width, height, depth_at), kCoc);
+    int count = 0;
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) count += label_at(labels, x, y) == Region::edge ? 1 : 0;
+    }
+    return count;
+  };
+  // Both in focus; infinitely far behind; a wire of one pixel; the picture's border on either side.
+  CHECK(edges(20, 4, [](int x, int) { return x < 9 ? 1.9f : 2.2f; }) == 2 * 4);
+  CHECK(edges(20, 4, [](int, int y) { return y < 2 ? 2.0f : kInfinity; }) == 20 * 2);
+  CHECK(edges(20, 4, [](int x, int) { return x == 9 ? 2.0f : 9.0f; }) == 3 * 4);
+  CHECK(edges(2, 1, [](int x, int) { return x == 0 ? 2.0f : 9.0f; }) == 2);
+  // The nearer one blurred; a step within one surface.
+  CHECK(edges(20, 4, [](int x, int) { return x < 9 ? 1.0f : 2.0f; }) == 0);
+  CHECK(edges(20, 4, [](int x, int) { return x < 9 ? 2.0f : 2.05f; }) == 0);
+  // A slope of 4 % a pixel, and one that ends before another surface.
+  const auto slope = [](int x) { return 1.0f / (0.55f - 0.02f * static_cast<float>(x)); };
+  CHECK(edges(9, 4, [&](int x, int) { return slope(x); }) == 0);
+  CHECK(edges(9, 4, [&](int x, int) { return x < 5 ? slope(x) : 9.0f; }) == 2 * 4);
+}
+
 TEST_CASE("regions: a mean by region is that of its pixels, and NaN where there are none") {
   PixelMap map = make_pixel_map(40, 5);
   const Image labels =
@@ -135,8 +162,10 @@ TEST_CASE("regions: a mean by region is that of its pixels, and NaN where there 
   const auto of = [&](Region region) { return means[static_cast<std::size_t>(region)]; };
   CHECK(of(Region::focus).pixels == 75);
   CHECK(of(Region::focus).mean == 1.0);
-  CHECK(of(Region::silhouette).pixels == 50);
+  CHECK(of(Region::silhouette).pixels == 40);
   CHECK(of(Region::silhouette).mean == 2.0);
+  CHECK(of(Region::edge).pixels == 10);
+  CHECK(of(Region::edge).mean == 2.0);
   CHECK(of(Region::far_field).pixels == 75);
   CHECK(of(Region::far_field).mean == 4.0);
   CHECK(of(Region::near_field).pixels == 0);
@@ -160,7 +189,7 @@ TEST_CASE("measures: a difference in one region is found in that one alone") {
   CHECK(of(Region::focus).ssim < 1.0);
   CHECK(of(Region::focus).flip > 0.0);
   CHECK(*of(Region::focus).hdr_flip > 0.0);
-  for (const Region region : {Region::silhouette, Region::far_field}) {
+  for (const Region region : {Region::silhouette, Region::edge, Region::far_field}) {
     CHECK(of(region).mse == 0.0);
     CHECK(std::isinf(of(region).psnr_db));
     CHECK(of(region).toned_mse == 0.0);

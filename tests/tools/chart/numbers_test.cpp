@@ -17,8 +17,10 @@ TEST_CASE("chart: JSON has an entry for each point of each scene, with every key
         R"({"scene":"figures","method":"two-pass","settings":{"max_coc_px":8.0,"profile":"ieee"},)"
         R"("median_ms":12.0,"pinhole_frames":2.0,"psnr_db":30.5,"ssim":0.875,)"
         R"("flip":0.1,"flip_silhouette":0.5,"flip_near":null,"flip_focus":0.0,"flip_far":0.25,)"
+        R"("flip_edge":0.125,)"
         R"("hdr_flip":0.2,"hdr_flip_silhouette":0.75,"hdr_flip_near":null,"hdr_flip_focus":0.0,)"
-        R"("hdr_flip_far":0.5,"filter_ms":2.5,"rounds":3,"on_front":true,"best_setting":true,)"
+        R"("hdr_flip_far":0.5,"hdr_flip_edge":0.375,"filter_ms":2.5,"rounds":3,"on_front":true,)"
+        R"("best_setting":true,)"
         R"("truth_samples":512,"noise_floor_flip":0.002,"noise_floor_hdr_flip":0.004,)"
         R"("noise_floor_psnr_db":60.0,"picture_hash":"0x0000000000000123"})");
   CHECK(json_text(list.at(3).at("settings")) == R"({"samples":64})");
@@ -35,14 +37,15 @@ TEST_CASE("chart: CSV is names and a line for each point") {
   const std::string csv = csv_of(chart_json({test::chart_panel("a, \"b\"")}));
   const std::string head =
       "scene,method,settings,median_ms,pinhole_frames,psnr_db,ssim,flip,flip_silhouette,flip_near,"
-      "flip_focus,flip_far,hdr_flip,hdr_flip_silhouette,hdr_flip_near,hdr_flip_focus,hdr_flip_far,"
-      "filter_ms,rounds,on_front,best_setting,truth_samples,noise_floor_flip,noise_floor_hdr_flip,"
+      "flip_focus,flip_far,flip_edge,hdr_flip,hdr_flip_silhouette,hdr_flip_near,hdr_flip_focus,"
+      "hdr_flip_far,hdr_flip_edge,filter_ms,rounds,on_front,best_setting,truth_samples,"
+      "noise_floor_flip,noise_floor_hdr_flip,"
       "noise_floor_psnr_db,picture_hash\n";
   CHECK(csv.starts_with(head));
   CHECK(std::count(csv.begin(), csv.end(), '\n') == 5);
   CHECK(
       csv.find("\"a, \"\"b\"\"\",two-pass,max_coc_px=8.0;profile=ieee,12.0,2.0,30.5,0.875,0.1,0.5,"
-               ",0.0,0.25,0.2,0.75,,0.0,0.5,2.5,3,true,true,512,0.002,0.004,60.0,"
+               ",0.0,0.25,0.125,0.2,0.75,,0.0,0.5,0.375,2.5,3,true,true,512,0.002,0.004,60.0,"
                "0x0000000000000123\n") != csv.npos);
   CHECK(csv.find(",,1,true,true,512") != csv.npos);
 }

@@ -67,9 +67,9 @@ TEST_CASE("render: edges in focus are nearer to those of views from all over a p
   Words with{"--method", "accumulation", "--samples", "256", "--jitter"};
   with.insert(with.end(), lens.begin(), lens.end());
   drawn("96x96", truth, with);
-  drawn("96x96", ours, lens);
+  drawn("96x96", ours, {"--coc-scale", "0", "--multisample", "1"});
   const double jagged = flip(ours, truth);
-  drawn("96x96", ours, {"--coc-scale", "0", "--supersample", "2"});
+  drawn("96x96", ours, {"--coc-scale", "0", "--multisample", "1", "--supersample", "2"});
   CHECK(flip(ours, truth) < 0.6 * jagged);
 }
 
@@ -145,7 +145,7 @@ TEST_CASE("render: --multisample makes edges smooth in shadow, and of materials 
     };
     if (of.size() == 1 && !missing_glsl().empty()) continue;
     render(truth, {"--method", "accumulation", "--samples", "256", "--jitter"});
-    render(ours, {"--method", "disc-layers"});
+    render(ours, {"--method", "disc-layers", "--multisample", "1"});
     const double jagged = flip(ours, truth);
     render(ours, {"--method", "disc-layers", "--multisample", "8"});
     // Edges of shadows themselves keep stairs.
@@ -169,6 +169,26 @@ TEST_CASE("render: --multisample of many frames gives each frame's own edges") {
   }
 }
 
+TEST_CASE("render: a pixel has four samples, and one where edges have no place") {
+  const TemporaryDirectory pictures;
+  const auto samples = [&](const Words& more) {
+    return drawn("32x32", pictures.file("a.npy"), more)["multisample"].get<int>();
+  };
+  CHECK(samples({}) == 4);
+  CHECK(samples({"--show", "pinhole"}) == 4);
+  CHECK(samples({"--method", "layered", "--layers", "3"}) == 4);
+  for (const Words& one :
+       {Words{"--multisample", "1"}, Words{"--show", "depth"}, Words{"--method", "accumulation"},
+        Words{"--method", "auto"}, Words{"--profile", "llvmpipe"}, Words{"--profile", "softpipe"},
+        Words{"--show", "pinhole", "--layers", "2"}, Words{"--effect", "temporal-aa"},
+        Words{"--arithmetic", "fixed"}, Words{"--gl", "emulated"},
+        Words{"--method", "generalised-diffusion", "--sharp-depths", "1:2"}}) {
+    CAPTURE(one.back());
+    CHECK(samples(one) == 1);
+  }
+  CHECK(samples({"--profile", "llvmpipe", "--multisample", "8"}) == 8);
+}
+
 TEST_CASE("render: --multisample refuses what has no place in it") {
   const auto refused = [](const Words& words, const Words& named) {
     check_refused_option("--multisample", words, named);
@@ -177,6 +197,7 @@ TEST_CASE("render: --multisample refuses what has no place in it") {
   refused({"4", "--method", "accumulation"}, {"--multisample", "accumulation", "--jitter"});
   refused({"4", "--method", "auto"}, {"--multisample", "auto", "name a method"});
   refused({"4", "--show", "depth"}, {"--multisample", "--show image or pinhole"});
+  refused({"4", "--show", "pinhole", "--layers", "2"}, {"--multisample", "--layers"});
   refused({"4", "--gl", "emulated"}, {"--multisample", "--gl"});
   refused({"4", "--profile", "softpipe"}, {"--multisample", "softpipe"});
   refused({"4", "--method", "two-pass", "--arithmetic", "fixed"},

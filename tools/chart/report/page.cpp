@@ -472,7 +472,7 @@ Json numbers_part(const ChartPage& page) {
   }
   part["text"] = json_list(
       {"A click on a heading sorts. Errors also by region: at silhouettes, nearer than the focus, "
-       "in focus, and beyond. Rows in colour are best for their time."});
+       "in focus, beyond, and on edges in focus. Rows in colour are best for their time."});
   part["table"] = points_table(page.panels);
   return part;
 }

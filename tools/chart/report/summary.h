@@ -69,11 +69,11 @@ std::vector<BestForBudget> best_for_budgets(const std::vector<ChartPanel>& panel
 // The chart as numbers: CSV and JSON.
 
 /// A list of {scene, method, settings, median_ms, pinhole_frames, psnr_db, ssim, flip,
-/// flip_silhouette, flip_near, flip_focus, flip_far, hdr_flip, hdr_flip_silhouette, hdr_flip_near,
-/// hdr_flip_focus, hdr_flip_far, filter_ms, rounds, on_front, best_setting, truth_samples,
-/// noise_floor_flip, noise_floor_hdr_flip, noise_floor_psnr_db, picture_hash}. null: an infinite
-/// PSNR, a region without pixels, the filter's share where nothing is filtered, and what needs
-/// times where nothing was timed. Needs settled panels, as all here.
+/// flip_silhouette, flip_near, flip_focus, flip_far, flip_edge, hdr_flip, the same by region,
+/// filter_ms, rounds, on_front, best_setting, truth_samples, noise_floor_flip,
+/// noise_floor_hdr_flip, noise_floor_psnr_db, picture_hash}. null: an infinite PSNR, a region
+/// without pixels, the filter's share where nothing is filtered, and what needs times where nothing
+/// was timed. Needs settled panels, as all here.
 Json chart_json(const std::vector<ChartPanel>& panels);
 
 /// A list of {scene, budget, measure, method, settings, error, pinhole_frames, median_ms}. A
