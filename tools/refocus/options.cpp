@@ -198,6 +198,9 @@ void add_refocus_options(CLI::App& parser, RefocusOptions& options) {
   add_arithmetic_option(parser, options.arithmetic);
   add_max_coc_option(parser, options.max_coc_px, "the picture's largest circle");
   add_weight_options(parser, options.leak, options.budget);
+  add_flag(parser, "--unmix-edges",
+           "Pixels that two surfaces share, as a renderer makes them, are blurred as two",
+           options.unmix);
   add_goal_options(parser, options.goal);
   add_sequence_options(parser, options.sequence, "Of the frames only every N-th, from the I-th on");
   begin_group(parser, "Run");

@@ -80,6 +80,7 @@ struct RefocusOptions {
   Aperture aperture;
   std::optional<HighlightCurve> highlights;
   Border border = Border::by_method;
+  bool unmix = false;  ///< edges
   Profile profile;
   std::string profile_name = "ieee";
   PoolOptions pool;

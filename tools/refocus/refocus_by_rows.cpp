@@ -417,6 +417,7 @@ std::string reason_for_whole(const RefocusOptions& options) {
   if (options.arithmetic != Arithmetic::floats) return "--arithmetic has no other form";
   if (options.show != RefocusShow::image) return "--show has no other form";
   if (options.border != Border::by_method) return "--border makes it larger";
+  if (options.unmix) return "--unmix-edges looks around each pixel";
   if (options.reading.mask) return "--mask is read whole";
   if (options.reading.mending.edges) return "--mend-edges looks around each pixel";
   if (options.reading.mending.bands) return "--mend-bands looks around each pixel";

@@ -7,6 +7,7 @@
 
 #include "dof/lens.h"
 #include "dof/show.h"
+#include "dof/unmix_edges.h"
 #include "tools/cli/errors.h"
 #include "tools/pictures/exr_file.h"
 #include "tools/refocus/depth/mend_depth.h"
@@ -34,7 +35,7 @@ DepthBounds bounds_of(const DepthMap& depth) {
   return bounds;
 }
 
-Image filtered(const Image& picture, const KeptPart& kept, const RefocusOptions& options,
+Image filtered(Image& picture, const KeptPart& kept, const RefocusOptions& options,
                const UsedRefocus& used, ThreadPool& pool) {
   if (options.arithmetic != Arithmetic::floats) {
     check_arithmetic(options.arithmetic, used.settings);
@@ -42,8 +43,11 @@ Image filtered(const Image& picture, const KeptPart& kept, const RefocusOptions&
     two_pass_in(options.arithmetic, {picture, used.settings, options.profile}, result, pool);
     return result;
   }
+  UnmixedEdges edges;
+  if (options.unmix) edges = unmix_edges(picture, options.profile, pool);
   DofInput input{picture, used.settings, options.profile};
   input.kept = kept;
+  if (edges.pixels > 0) input.edges = {edges.coverage, edges.other};
   return apply(*used.method, input, pool);
 }
 
