@@ -18,17 +18,17 @@
 namespace softfocus {
 namespace {
 
-constexpr int kRowsAtOnce = 8;
+constexpr int kUnmixedRows = 8;
 
 struct Step {
   int x, y;
 };
 // The nearest first.
-constexpr std::array<Step, 8> kAround{
+constexpr std::array<Step, 8> kAcross{
     {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}}};
 /// How far away a surface is looked for without a mixture: on a straight edge the second pixel on
 /// either side is the first.
-constexpr int kReach = 2;
+constexpr int kPureReach = 2;
 
 /// The picture as it came.
 struct Source {
@@ -61,7 +61,7 @@ Source source_of(const ConstImageView& scene, ThreadPool& pool) {
   source.colours.resize(pixels);
   source.inverse_depths.resize(pixels);
   source.on_edge.resize(pixels);
-  for_each_row(pool, scene.height, kRowsAtOnce, [&](int y) {
+  for_each_row(pool, scene.height, kUnmixedRows, [&](int y) {
     const std::span<const std::uint16_t> texels = row<std::uint16_t>(scene, y);
     for (int x = 0; x < scene.width; ++x) {
       const std::uint16_t* v = &texels[4 * static_cast<std::size_t>(x)];
@@ -70,10 +70,10 @@ Source source_of(const ConstImageView& scene, ThreadPool& pool) {
       source.inverse_depths[source.at(x, y)] = 1.0f / half_to_float(v[3]);
     }
   });
-  for_each_row(pool, scene.height, kRowsAtOnce, [&](int y) {
+  for_each_row(pool, scene.height, kUnmixedRows, [&](int y) {
     for (int x = 0; x < scene.width; ++x) {
       bool on_edge = false;
-      for (const Step& step : kAround) on_edge = on_edge || source.has_edge(x, y, step);
+      for (const Step& step : kAcross) on_edge = on_edge || source.has_edge(x, y, step);
       source.on_edge[source.at(x, y)] = on_edge ? 1 : 0;
     }
   });
@@ -91,8 +91,8 @@ void for_each_of_surface(const Source& source, int x, int y, float surface, floa
                          const Visit& visit) {
   // A quarter of the way to the other is still this one.
   const float most = 0.25f * std::fabs(surface - other);
-  for (int dy = -kReach; dy <= kReach; ++dy) {
-    for (int dx = -kReach; dx <= kReach; ++dx) {
+  for (int dy = -kPureReach; dy <= kPureReach; ++dy) {
+    for (int dx = -kPureReach; dx <= kPureReach; ++dx) {
       if (!source.has(x + dx, y + dy)) continue;
       const std::size_t at = source.at(x + dx, y + dy);
       if (std::fabs(source.inverse_depths[at] - surface) > most) continue;
@@ -172,7 +172,7 @@ std::optional<TwoSurfaces> two_surfaces(const Source& source, int x, int y) {
   const float own = source.inverse_depths[source.at(x, y)];
   std::optional<TwoSurfaces> best;
   for (const bool nearer : {true, false}) {
-    for (const Step& step : kAround) {
+    for (const Step& step : kAcross) {
       if (!source.has_edge(x, y, step)) continue;
       const float other = source.inverse_depths[source.at(x + step.x, y + step.y)];
       if ((other > own) != nearer) continue;
@@ -194,7 +194,7 @@ UnmixedEdges unmix_edges(const ImageView& scene, const Profile& profile, ThreadP
   };
   std::vector<std::vector<Taken>> rows(static_cast<std::size_t>(scene.height));
   std::vector<std::array<std::size_t, 2>> counts(rows.size());
-  for_each_row(pool, scene.height, kRowsAtOnce, [&](int y) {
+  for_each_row(pool, scene.height, kUnmixedRows, [&](int y) {
     for (int x = 0; x < scene.width; ++x) {
       if (source.on_edge[source.at(x, y)] == 0) continue;
       const auto found = two_surfaces(source, x, y);
@@ -215,7 +215,7 @@ UnmixedEdges unmix_edges(const ImageView& scene, const Profile& profile, ThreadP
   if (6 * mixtures < edges) return result;
   result.other = make_image(Format::rgba16f, scene.width, scene.height);
   result.coverage = make_image(Format::r8, scene.width, scene.height);
-  for_each_row(pool, scene.height, kRowsAtOnce, [&](int y) {
+  for_each_row(pool, scene.height, kUnmixedRows, [&](int y) {
     const std::span<std::uint16_t> own = row<std::uint16_t>(scene, y);
     const std::span<std::uint16_t> other = row<std::uint16_t>(result.other, y);
     const std::span<std::uint8_t> coverage = row<std::uint8_t>(result.coverage, y);

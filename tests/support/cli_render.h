@@ -19,8 +19,9 @@ inline constexpr const char* kSize = "48x32";
 
 inline const std::string kCube = "[material.m]\n[[object]]\nshape = \"cube\"\nmaterial = \"m\"\n";
 
+/// Of one sample a pixel, as filters and other programs have it.
 inline Words render(const std::string& scene, const std::string& output, const Words& more = {}) {
-  Words words{"render", scene, "--size", kSize, "-o", output};
+  Words words{"render", scene, "--size", kSize, "-o", output, "--multisample", "1"};
   words.insert(words.end(), more.begin(), more.end());
   return words;
 }

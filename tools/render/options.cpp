@@ -250,8 +250,9 @@ void settle_samples(RenderOptions& options, const CLI::App& parser) {
   options.samples_are_given = is_given(parser, "--multisample");
   const std::string why = why_one_sample(options);
   if (!options.samples_are_given) {
-    // A driver's profile is for its picture.
-    if (!why.empty() || options.profile != Profile{}) options.samples = 1;
+    // A driver's profile is for its picture, and what a filter reads has one surface a pixel.
+    const bool is_for_others = options.profile != Profile{} || options.show == Show::pinhole;
+    if (!why.empty() || is_for_others) options.samples = 1;
   } else if (options.samples > 1 && !why.empty()) {
     throw UsageError("--multisample" + why);
   }

@@ -32,7 +32,7 @@ Picture picture_at(const std::string& file) {
 
 // The words that ask for the choice by name.
 Words asked_by_name(const nlohmann::json& choice) {
-  Words words{"--method", choice["method"].get<std::string>()};
+  Words words{"--method", choice["method"].get<std::string>(), "--multisample", "1"};
   if (choice.contains("max_coc_px")) {
     words.insert(words.end(), {"--max-coc", choice["max_coc_px"].dump()});
   }

@@ -35,8 +35,8 @@ const json& entry_of(const json& list, const std::string& candidate) {
 double flip_of(const Words& method) {
   const TemporaryDirectory directory;
   const auto drawn = [&](const char* name, const Words& more) {
-    Words words{"render", "night-lights",      "--size", "64x48", "--coc-scale", "5",
-                "-o",     directory.file(name)};
+    Words words{"render", "night-lights",  "--size", "64x48", "--coc-scale",
+                "5",      "--multisample", "1",      "-o",    directory.file(name)};
     words.insert(words.end(), more.begin(), more.end());
     REQUIRE(run_program(words).status == 0);
     return directory.file(name);

@@ -54,7 +54,7 @@ void check_render_on_gl(const std::string& driver, const std::string& method) {
                           const std::string& name) {
     const ProgramRun run =
         run_program({"render", "cube-room", "--size", "96x64", "--method", method, "--max-coc", "6",
-                     option, value, "-o", directory.file(name)});
+                     "--multisample", "1", option, value, "-o", directory.file(name)});
     CHECK(run.status == 0);
     CHECK(run.err == "");
     return read_file(directory.file(name));

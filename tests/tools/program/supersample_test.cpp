@@ -175,13 +175,13 @@ TEST_CASE("render: a pixel has four samples, and one where edges have no place")
     return drawn("32x32", pictures.file("a.npy"), more)["multisample"].get<int>();
   };
   CHECK(samples({}) == 4);
-  CHECK(samples({"--show", "pinhole"}) == 4);
+  CHECK(samples({"--method", "pinhole"}) == 4);
   CHECK(samples({"--method", "layered", "--layers", "3"}) == 4);
   for (const Words& one :
        {Words{"--multisample", "1"}, Words{"--show", "depth"}, Words{"--method", "accumulation"},
-        Words{"--method", "auto"}, Words{"--profile", "llvmpipe"}, Words{"--profile", "softpipe"},
-        Words{"--show", "pinhole", "--layers", "2"}, Words{"--effect", "temporal-aa"},
-        Words{"--arithmetic", "fixed"}, Words{"--gl", "emulated"},
+        Words{"--method", "auto"}, Words{"--show", "pinhole"}, Words{"--profile", "llvmpipe"},
+        Words{"--profile", "softpipe"}, Words{"--show", "pinhole", "--layers", "2"},
+        Words{"--effect", "temporal-aa"}, Words{"--arithmetic", "fixed"}, Words{"--gl", "emulated"},
         Words{"--method", "generalised-diffusion", "--sharp-depths", "1:2"}}) {
     CAPTURE(one.back());
     CHECK(samples(one) == 1);

@@ -142,7 +142,7 @@ TEST_CASE("compare: --regions finds a fault in the region where it is") {
   const std::string a = files.write("a.npy", image);
   const Words lens{a, b, "--regions", "--focus", "2", "--coc-scale", "20"};
   const auto json = compare_json(lens);
-  CHECK(json["regions"].size() == 4);
+  CHECK(json["regions"].size() == 5);
   CHECK(region_of(json, "far")["flip"].get<double>() > 0.0);
   CHECK(region_of(json, "far")["mse"].get<double>() > 0.0);
   CHECK(region_of(json, "far")["psnr_db"].is_number());
@@ -164,7 +164,8 @@ TEST_CASE("compare: --regions follows the lens") {
     words.insert(words.end(), lens.begin(), lens.end());
     return region_of(compare_json(words), region)["pixels"].get<int>();
   };
-  CHECK(pixels({"--coc-scale", "0"}, "focus") == 3200);
+  CHECK(pixels({"--coc-scale", "0"}, "focus") == 3200 - 2 * 16);
+  CHECK(pixels({"--coc-scale", "0"}, "edge") == 2 * 16);
   CHECK(pixels({"--focus", "4", "--coc-scale", "20"}, "near") > 1000);
   CHECK(pixels({"--focus", "4", "--coc-scale", "20"}, "focus") > 1000);
   CHECK(pixels({"--focus", "2", "--coc-scale", "20"}, "far") > 1000);

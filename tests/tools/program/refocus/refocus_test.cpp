@@ -138,7 +138,9 @@ TEST_CASE(
   for (const std::string method : {"two-pass", "one-pass", "disc-layers", "mipmap", "scatter"}) {
     CAPTURE(method);
     const Words options{"--method", method, "--max-coc", "8", "-o", directory.file("result.npy")};
-    CHECK(run_program(joined({"render", folder + "cubes.toml", "--size", "240x160"}, options))
+    CHECK(run_program(
+              joined({"render", folder + "cubes.toml", "--size", "240x160", "--multisample", "1"},
+                     options))
               .status == 0);
     const Image truth = read_image_file(directory.file("result.npy")).image;
     const ProgramRun run =
