@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
@@ -80,59 +82,74 @@ Source source_of(const ConstImageView& scene, ThreadPool& pool) {
   return source;
 }
 
-/// A surface's colour around a pixel, of pixels that are of it alone, or else of those on edges.
 struct SurfaceColour {
   glm::vec3 mean{};
-  bool is_pure = false;
+  float variance = 0.0f;  ///< of the three channels together
 };
 
-template <class Visit>
-void for_each_of_surface(const Source& source, int x, int y, float surface, float other,
-                         const Visit& visit) {
+/// A surface around a pixel, as it shows where it has no edge, nearer pixels for more.
+std::optional<SurfaceColour> pure_colour(const Source& source, int x, int y, float surface,
+                                         float other) {
   // A quarter of the way to the other is still this one.
   const float most = 0.25f * std::fabs(surface - other);
+  glm::vec3 sum{};
+  float squares = 0.0f, weights = 0.0f;
   for (int dy = -kPureReach; dy <= kPureReach; ++dy) {
     for (int dx = -kPureReach; dx <= kPureReach; ++dx) {
       if (!source.has(x + dx, y + dy)) continue;
       const std::size_t at = source.at(x + dx, y + dy);
-      if (std::fabs(source.inverse_depths[at] - surface) > most) continue;
-      visit(at, 1.0f / static_cast<float>(1 + dx * dx + dy * dy));
+      if (source.on_edge[at] != 0 || std::fabs(source.inverse_depths[at] - surface) > most) {
+        continue;
+      }
+      const float weight = 1.0f / static_cast<float>(1 + dx * dx + dy * dy);
+      sum += source.colours[at] * weight;
+      squares += glm::dot(source.colours[at], source.colours[at]) * weight;
+      weights += weight;
     }
   }
+  if (weights == 0.0f) return {};
+  const glm::vec3 mean = sum * (1.0f / weights);
+  return SurfaceColour{mean, std::max(squares / weights - glm::dot(mean, mean), 0.0f)};
 }
 
-SurfaceColour colour_of(const Source& source, int x, int y, float surface, float other) {
-  SurfaceColour found;
-  glm::vec3 pure{}, mixed{};
-  float pure_weight = 0.0f, mixed_weight = 0.0f;
-  for_each_of_surface(source, x, y, surface, other, [&](std::size_t at, float weight) {
-    if (source.on_edge[at] == 0) {
-      pure += source.colours[at] * weight;
-      pure_weight += weight;
-    } else {
-      mixed += source.colours[at] * weight;
-      mixed_weight += weight;
+/// A surface that shows nowhere without a mixture: the light that it adds to another's, over the
+/// pixels that have its depth, which are as many as its area is in the mean. None if the other's
+/// texture could be that light.
+std::optional<SurfaceColour> colour_by_light(const Source& source, int x, int y, float surface,
+                                             const SurfaceColour& other, float other_inverse) {
+  const float border = 0.5f * (surface + other_inverse);
+  glm::vec3 light{};
+  float pixels = 0.0f, area = 0.0f;
+  for (int dy = -kPureReach; dy <= kPureReach; ++dy) {
+    for (int dx = -kPureReach; dx <= kPureReach; ++dx) {
+      if (!source.has(x + dx, y + dy)) continue;
+      const std::size_t at = source.at(x + dx, y + dy);
+      if (source.on_edge[at] == 0) continue;
+      const float depth = source.inverse_depths[at];
+      light += source.colours[at] - other.mean;
+      pixels += 1.0f;
+      if (surface > other_inverse ? depth > border : depth <= border) area += 1.0f;
     }
-  });
-  found.is_pure = pure_weight > 0.0f;
-  found.mean = found.is_pure ? pure * (1.0f / pure_weight) : mixed * (1.0f / mixed_weight);
-  return found;
+  }
+  constexpr float kMostDoubt = 0.03f;
+  if (!(pixels * other.variance < kMostDoubt * glm::dot(light, light))) return {};
+  return SurfaceColour{glm::max(other.mean + light * (1.0f / area), glm::vec3{0.0f}),
+                       other.variance * pixels / (area * area)};
 }
 
-/// The mixed pixel of a surface whose colour is farthest from another surface's.
-glm::vec3 purest(const Source& source, int x, int y, float surface, float other,
-                 const glm::vec3& other_colour) {
-  glm::vec3 colour{};
-  float most = -1.0f;
-  for_each_of_surface(source, x, y, surface, other, [&](std::size_t at, float) {
-    const glm::vec3 apart = source.colours[at] - other_colour;
-    const float square = glm::dot(apart, apart);
-    if (square > most) {
-      most = square;
-      colour = source.colours[at];
-    }
-  });
-  return colour;
+/// The part of a pixel that another surface has by the depths of its neighbours.
+float part_by_depth(const Source& source, int x, int y, float other) {
+  const float own = source.inverse_depths[source.at(x, y)];
+  const float border = 0.5f * (own + other);
+  float sum = 0.0f, weights = 4.0f;
+  for (const Step& step : kAcross) {
+    if (!source.has(x + step.x, y + step.y)) continue;
+    const float weight = step.x == 0 || step.y == 0 ? 2.0f : 1.0f;
+    const float depth = source.inverse_depths[source.at(x + step.x, y + step.y)];
+    weights += weight;
+    if (other > own ? depth > border : depth < border) sum += weight;
+  }
+  return sum / weights;
 }
 
 /// A pixel as two surfaces.
@@ -141,14 +158,21 @@ struct TwoSurfaces {
   float other_inverse_depth = 0.0f;
   float part = 0.0f;      ///< that the other has
   float residual = 0.0f;  ///< squared: of the colour, what no mixture gives
+  bool is_clear = false;  ///< whether both surfaces are of one colour each
+  bool mixes = false;     ///< whether the pixel's colour is far from either
 };
 
 std::optional<TwoSurfaces> take_apart(const Source& source, int x, int y, float other) {
   const float own = source.inverse_depths[source.at(x, y)];
-  SurfaceColour mine = colour_of(source, x, y, own, other);
-  SurfaceColour its = colour_of(source, x, y, other, own);
-  if (!mine.is_pure) mine.mean = purest(source, x, y, own, other, its.mean);
-  if (!its.is_pure) its.mean = purest(source, x, y, other, own, mine.mean);
+  auto own_colour = pure_colour(source, x, y, own, other);
+  auto other_colour = pure_colour(source, x, y, other, own);
+  if (!own_colour && other_colour) {
+    own_colour = colour_by_light(source, x, y, own, *other_colour, other);
+  } else if (own_colour && !other_colour) {
+    other_colour = colour_by_light(source, x, y, other, *own_colour, own);
+  }
+  if (!own_colour || !other_colour) return {};
+  const SurfaceColour &mine = *own_colour, &its = *other_colour;
   const glm::vec3 colour = source.colours[source.at(x, y)];
   const glm::vec3 apart = its.mean - mine.mean;
   const float square = glm::dot(apart, apart);
@@ -157,13 +181,42 @@ std::optional<TwoSurfaces> take_apart(const Source& source, int x, int y, float 
   if (!(square > kLeastContrast * kLeastContrast * light)) return {};
   TwoSurfaces found;
   found.other_inverse_depth = other;
-  const float part = std::clamp(glm::dot(colour - mine.mean, apart) / square, 0.0f, 1.0f);
+  // The likeliest part, of what the colour and the depths around say, each with its doubt.
+  constexpr float kNoise = 1e-4f;    // of the light: variance of a surface of one colour
+  constexpr float kDoubt = 0.0625f;  // variance of the part by depths
+  const float mine_varies = mine.variance + kNoise * light;
+  const float its_varies = its.variance + kNoise * light;
+  const float by_depth = part_by_depth(source, x, y, other);
+  const float by_colour = glm::dot(colour - mine.mean, apart) / square;
+  const float doubt =
+      ((1.0f - by_depth) * (1.0f - by_depth) * mine_varies + by_depth * by_depth * its_varies) /
+      square;
+  const float part =
+      std::clamp((by_colour * kDoubt + by_depth * doubt) / (kDoubt + doubt), 0.0f, 1.0f);
   // As a byte holds it, so that both together are the pixel again.
   found.part = std::floor(part * 255.0f + 0.5f) / 255.0f;
-  const glm::vec3 rest = colour - (mine.mean * (1.0f - found.part) + its.mean * found.part);
+  const float rest_of = 1.0f - found.part;
+  const glm::vec3 rest = colour - (mine.mean * rest_of + its.mean * found.part);
   found.residual = glm::dot(rest, rest);
-  found.own = mine.mean + rest;
-  found.other = its.mean + rest;
+  // What is left over is of the surface that varies. Of more than that a third has a part.
+  const float varies = rest_of * rest_of * mine_varies + found.part * found.part * its_varies;
+  constexpr float kMost = 6.0f;  // of the variance
+  if (!(found.residual <= kMost * varies)) return {};
+  const glm::vec3 share = rest * (1.0f / varies);
+  found.own = mine.mean + share * (rest_of * mine_varies);
+  found.other = its.mean + share * (found.part * its_varies);
+  // No light is negative: then the other has all that is left.
+  for (int c = 0; c < 3; ++c) {
+    if (found.own[c] < 0.0f) {
+      found.own[c] = 0.0f;
+      found.other[c] = colour[c] / found.part;
+    } else if (found.other[c] < 0.0f) {
+      found.other[c] = 0.0f;
+      found.own[c] = colour[c] / rest_of;
+    }
+  }
+  found.is_clear = doubt < 0.02f;
+  found.mixes = by_colour > 0.2f && by_colour < 0.8f;
   return found;
 }
 
@@ -184,44 +237,63 @@ std::optional<TwoSurfaces> two_surfaces(const Source& source, int x, int y) {
   return best;
 }
 
+/// How far two surfaces are blurred apart: 0 if a ghost of one in the other could not be seen.
+float blur_apart(const DofSettings& settings, float depth_m, float other_m) {
+  const auto radius = [&](float metres) {
+    return std::clamp(coc_radius_px(settings.coc, metres), -settings.max_coc_px,
+                      settings.max_coc_px);
+  };
+  const float apart_px = std::fabs(radius(depth_m) - radius(other_m));
+  return std::clamp((apart_px - 2.0f) / 3.0f, 0.0f, 1.0f);
+}
+
+void soften(TwoSurfaces& found, const glm::vec3& colour, float part) {
+  found.own = colour + (found.own - colour) * part;
+  found.other = colour + (found.other - colour) * part;
+  if (part == 0.0f) found.part = 0.0f;
+}
+
 }  // namespace
 
-UnmixedEdges unmix_edges(const ImageView& scene, const Profile& profile, ThreadPool& pool) {
+UnmixedEdges unmix_edges(const ImageView& scene, const DofSettings& settings,
+                         const Profile& profile, ThreadPool& pool) {
   const Source source = source_of(scene, pool);
   struct Taken {
     int x;
     TwoSurfaces surfaces;
   };
   std::vector<std::vector<Taken>> rows(static_cast<std::size_t>(scene.height));
-  std::vector<std::array<std::size_t, 2>> counts(rows.size());
+  std::vector<std::array<int, 2>> counts(rows.size());
   for_each_row(pool, scene.height, kUnmixedRows, [&](int y) {
     for (int x = 0; x < scene.width; ++x) {
       if (source.on_edge[source.at(x, y)] == 0) continue;
-      const auto found = two_surfaces(source, x, y);
+      auto found = two_surfaces(source, x, y);
       if (!found) continue;
       auto& [edges, mixtures] = counts[static_cast<std::size_t>(y)];
-      ++edges;
-      mixtures += found->part > 0.2f && found->part < 0.8f ? 1 : 0;
+      edges += found->is_clear ? 1 : 0;
+      mixtures += found->is_clear && found->mixes ? 1 : 0;
+      soften(*found, source.colours[source.at(x, y)],
+             blur_apart(settings, 1.0f / source.inverse_depths[source.at(x, y)],
+                        1.0f / found->other_inverse_depth));
       if (found->part > 0.0f) rows[static_cast<std::size_t>(y)].push_back({x, *found});
     }
   });
-  std::size_t edges = 0, mixtures = 0;
+  int edges = 0, mixtures = 0;
   for (const auto& of_row : counts) {
     edges += of_row[0];
     mixtures += of_row[1];
   }
   UnmixedEdges result;
-  // Means over a pixel are of any part. Without them it is a surface's texture that lies between.
-  if (6 * mixtures < edges) return result;
+  // Means over a pixel are of any part: a fifth or more of such pixels lie between. Of one sample a
+  // pixel it is a tenth at most, by shading and texture.
+  if (7 * mixtures <= edges) return result;
   result.other = make_image(Format::rgba16f, scene.width, scene.height);
   result.coverage = make_image(Format::r8, scene.width, scene.height);
   for_each_row(pool, scene.height, kUnmixedRows, [&](int y) {
     const std::span<std::uint16_t> own = row<std::uint16_t>(scene, y);
     const std::span<std::uint16_t> other = row<std::uint16_t>(result.other, y);
     const std::span<std::uint8_t> coverage = row<std::uint8_t>(result.coverage, y);
-    const auto half = [&](float value) {
-      return float_to_half(std::max(value, 0.0f), profile.half_store);
-    };
+    const auto half = [&](float value) { return float_to_half(value, profile.half_store); };
     for (const auto& [x, found] : rows[static_cast<std::size_t>(y)]) {
       const std::size_t texel = 4 * static_cast<std::size_t>(x);
       for (int c = 0; c < 3; ++c) {

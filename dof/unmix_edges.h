@@ -10,6 +10,7 @@
 
 #include <cstddef>
 
+#include "dof/dof.h"
 #include "raster/images/image.h"
 #include "raster/numbers/profile.h"
 #include "raster/threads/parallel.h"
@@ -26,6 +27,7 @@ struct UnmixedEdges {
 /// surface that alpha is of. In focus smooth_edges() puts both together again, to what the pixel
 /// was. A picture whose colours are not mixed, one sample a pixel, is left as it is. The same bits
 /// for any number of threads.
-UnmixedEdges unmix_edges(const ImageView& scene, const Profile& profile, ThreadPool& pool);
+UnmixedEdges unmix_edges(const ImageView& scene, const DofSettings& settings,
+                         const Profile& profile, ThreadPool& pool);
 
 }  // namespace softfocus

@@ -6,12 +6,21 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdlib>
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <string_view>
 #include <vector>
 
+#include "dof/measure/flip.h"
+#include "dof/unmix_edges.h"
 #include "raster/images/image.h"
 #include "raster/images/texel.h"
+#include "scenes/draw/draw_scene.h"
+#include "scenes/draw/frame_matrices.h"
+#include "scenes/frame/frame.h"
+#include "scenes/load/load_scene.h"
 #include "tests/support/random.h"
 
 using namespace softfocus;
@@ -180,4 +189,145 @@ TEST_CASE("smooth edges: the input is checked") {
   const std::vector<float> radii(std::size_t{kEdgeWidth} * kEdgeHeight);
   input.radii_px = radii;
   CHECK(input_error(input, result) != nullptr);
+}
+
+TEST_CASE("smooth edges: what is blurred over a sharp edge hides what the edge's own colours are") {
+  EdgePicture picture = edge_picture();
+  for (int y = 0; y < kEdgeHeight; ++y) {
+    for (int x = 0; x < kEdgeWidth; ++x) {
+      const glm::vec4 other = load_texel(picture.other, x, y);
+      store_texel(picture.other, x, y, {glm::vec3{other} * 1.5f, other.w}, {});
+    }
+  }
+  // As under a near thing, out of focus, of one colour.
+  Image hidden = make_image(Format::rgba16f, kEdgeWidth, kEdgeHeight);
+  for (int y = 0; y < kEdgeHeight; ++y) {
+    for (int x = 0; x < kEdgeWidth; ++x) store_texel(hidden, x, y, {4.0f, 4.0f, 4.0f, 1.0f}, {});
+  }
+  Image smooth = hidden;
+  ThreadPool pool{1};
+  smooth_edges(picture.input({0.0f, 2.0f}), smooth, pool);
+  CHECK(equal(smooth, hidden));
+}
+
+// A lens with circles of 12 pixels between the two surfaces above.
+constexpr DofSettings kStrong{.coc = {16.0f, 2.0f}, .max_coc_px = 32.0f};
+
+TEST_CASE("unmixed edges: two surfaces of one colour each are found again, with their parts") {
+  const EdgePicture right = edge_picture();
+  Image mixed = make_image(Format::rgba16f, kEdgeWidth, kEdgeHeight);
+  for (int y = 0; y < kEdgeHeight; ++y) {
+    for (int x = 0; x < kEdgeWidth; ++x) {
+      const float part = std::clamp(line_at(y) - static_cast<float>(x), 0.0f, 1.0f);
+      glm::vec4 texel = kNear * part + kFar * (1.0f - part);
+      texel.w = load_texel(right.scene, x, y).w;
+      store_texel(mixed, x, y, texel, {});
+    }
+  }
+  ThreadPool pool{1};
+  const UnmixedEdges edges = unmix_edges(mixed, kStrong, {}, pool);
+  CHECK(edges.pixels >= 12);  // not those that are a thousandth off
+  for (int y = 0; y < kEdgeHeight; ++y) {
+    for (int x = 0; x < kEdgeWidth; ++x) {
+      CAPTURE(x);
+      CAPTURE(y);
+      CHECK(glm::length(load_texel(mixed, x, y) - load_texel(right.scene, x, y)) < 0.02f);
+      const auto at = static_cast<std::size_t>(x);
+      const int part = row<std::uint8_t>(edges.coverage, y)[at];
+      CHECK(std::abs(part - row<std::uint8_t>(right.coverage, y)[at]) < 5);
+      if (part == 0) continue;
+      const glm::vec4 other = load_texel(edges.other, x, y);
+      CHECK(glm::length(other - load_texel(right.other, x, y)) < 0.05f);
+    }
+  }
+}
+
+namespace {
+
+// Of a scene, drawn at eight times the size: the mean of each pixel's colours, or the one next to
+// its centre, with that one's depth.
+Image reduced(const Image& large, bool mixes) {
+  constexpr int kTimes = 8;
+  Image small = make_image(Format::rgba16f, large.width / kTimes, large.height / kTimes);
+  for (int y = 0; y < small.height; ++y) {
+    for (int x = 0; x < small.width; ++x) {
+      const glm::vec4 centre = load_texel(large, kTimes * x + kTimes / 2, kTimes * y + kTimes / 2);
+      glm::vec4 sum{};
+      for (int j = 0; j < kTimes; ++j) {
+        for (int i = 0; i < kTimes; ++i) sum += load_texel(large, kTimes * x + i, kTimes * y + j);
+      }
+      sum *= 1.0f / (kTimes * kTimes);
+      store_texel(small, x, y, mixes ? glm::vec4{glm::vec3{sum}, centre.w} : centre, {});
+    }
+  }
+  return small;
+}
+
+Image large_scene(const char* name, int size, ThreadPool& pool) {
+  const Scene scene = load_scene(name, scene_search_path({}));
+  const int large = 8 * size;
+  return draw_scene(scene, camera_matrices(scene.camera, 0.0, large, large), 0.0, large, large, {},
+                    pool);
+}
+
+}  // namespace
+
+TEST_CASE("unmixed edges: put together again they are the picture, and one sample a pixel stays") {
+  ThreadPool pool{2}, one{1};
+  const DofSettings strong{.coc = {1000.0f, 1.0f}, .max_coc_px = 1000.0f};
+  for (const char* name : {"figures", "foliage", "sphere-world", "near-fence"}) {
+    CAPTURE(name);
+    const Image large = large_scene(name, 96, pool);
+    const Image mixed = reduced(large, true);
+    Image taken_apart = mixed;
+    const UnmixedEdges edges = unmix_edges(taken_apart, strong, {}, pool);
+    CHECK(edges.pixels > 50);
+    const Image together = apply(*find_method("pinhole"),
+                                 {.scene = taken_apart,
+                                  .settings = {},
+                                  .profile = {},
+                                  .edges = {edges.coverage, edges.other}},
+                                 pool);
+    float most = 0.0f;
+    for (int y = 0; y < mixed.height; ++y) {
+      for (int x = 0; x < mixed.width; ++x) {
+        const glm::vec4 apart = load_texel(together, x, y) - load_texel(mixed, x, y);
+        for (int c = 0; c < 4; ++c) most = std::max(most, std::fabs(apart[c]));
+      }
+    }
+    CHECK(most < 0.05f);
+    Image again = mixed;
+    CHECK(equal(unmix_edges(again, strong, {}, one).other, edges.other));
+    CHECK(equal(again, taken_apart));
+    const Image aliased = reduced(large, false);
+    Image left = aliased;
+    CHECK(unmix_edges(left, strong, {}, pool).pixels == 0);
+    CHECK(equal(left, aliased));
+  }
+}
+
+TEST_CASE("unmixed edges: a renderer's picture comes nearer to its own lens's") {
+  ThreadPool pool{2};
+  for (const char* name : {"figures", "foliage"}) {
+    CAPTURE(name);
+    const Scene scene = load_scene(name, scene_search_path({}));
+    Shot views = shot_of(scene, 0.0, 192, 192, find_method_choice("accumulation"));
+    views.sampling.samples = 128;
+    views.sampling.jitter = true;
+    const Image truth = make_frame(views, pool).picture;
+    const Shot filtered = shot_of(scene, 0.0, 192, 192, find_method_choice("disc-layers"));
+    const DofSettings settings = make_frame(filtered, pool).lens->settings;
+    Image picture = reduced(large_scene(name, 192, pool), true);
+    const auto error = [&](const EdgeSurfaces& edges) {
+      const Image made =
+          apply(*filtered.method.filter,
+                {.scene = picture, .settings = settings, .profile = {}, .edges = edges}, pool);
+      return mean(flip_map(truth, made, clamped_tone(), pool));
+    };
+    const double mixed = error({});
+    const UnmixedEdges edges = unmix_edges(picture, settings, {}, pool);
+    const double unmixed = error({edges.coverage, edges.other});
+    MESSAGE(mixed << ", " << unmixed);
+    CHECK(unmixed < (scene.name == "figures" ? 0.95 : 1.0) * mixed);
+  }
 }

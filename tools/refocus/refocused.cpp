@@ -36,7 +36,7 @@ DepthBounds bounds_of(const DepthMap& depth) {
 }
 
 Image filtered(Image& picture, const KeptPart& kept, const RefocusOptions& options,
-               const UsedRefocus& used, ThreadPool& pool) {
+               UsedRefocus& used, ThreadPool& pool) {
   if (options.arithmetic != Arithmetic::floats) {
     check_arithmetic(options.arithmetic, used.settings);
     Image result = make_image(picture.format, picture.width, picture.height);
@@ -44,17 +44,17 @@ Image filtered(Image& picture, const KeptPart& kept, const RefocusOptions& optio
     return result;
   }
   UnmixedEdges edges;
-  if (options.unmix) edges = unmix_edges(picture, options.profile, pool);
+  if (options.unmix) edges = unmix_edges(picture, used.settings, options.profile, pool);
   DofInput input{picture, used.settings, options.profile};
   input.kept = kept;
   if (edges.pixels > 0) input.edges = {edges.coverage, edges.other};
+  used.unmixed_pixels = std::max(used.unmixed_pixels, edges.pixels);
   return apply(*used.method, input, pool);
 }
 
 /// Colour and opacity, each filtered.
 PictureOnItsWay both_filtered(PictureOnItsWay source, const KeptPart& kept,
-                              const RefocusOptions& options, const UsedRefocus& used,
-                              ThreadPool& pool) {
+                              const RefocusOptions& options, UsedRefocus& used, ThreadPool& pool) {
   PictureOnItsWay result{filtered(source.picture, kept, options, used, pool)};
   if (!is_transparent(source.opacity)) {
     result.opacity = std::move(source.opacity);
@@ -149,7 +149,7 @@ PictureOnItsWay without_repeated(const PictureOnItsWay& source, const SquarePixe
 
 /// Filters with pixels beyond the borders, as far as the largest circle reaches.
 PictureOnItsWay filtered_in_border(PictureOnItsWay source, const RefocusOptions& options,
-                                   const UsedRefocus& used, ThreadPool& pool) {
+                                   UsedRefocus& used, ThreadPool& pool) {
   const float reach_px = std::min(used.largest_circle_px, used.settings.max_coc_px);
   const int margin = static_cast<int>(std::ceil(reach_px));
   const int width = source.picture.width, height = source.picture.height;
@@ -179,7 +179,7 @@ PictureOnItsWay filtered_in_border(PictureOnItsWay source, const RefocusOptions&
 
 /// Of pixels of that width over their height.
 PictureOnItsWay filtered_square(PictureOnItsWay source, double aspect,
-                                const RefocusOptions& options, const UsedRefocus& used,
+                                const RefocusOptions& options, UsedRefocus& used,
                                 ThreadPool& pool) {
   if (aspect == 1.0) return filtered_in_border(std::move(source), options, used, pool);
   const SquarePixels square = square_pixels(source.picture.width, source.picture.height, aspect);
@@ -191,7 +191,9 @@ PictureOnItsWay filtered_square(PictureOnItsWay source, double aspect,
     of_square.settings.max_coc_px = std::min(of_square.settings.max_coc_px * more, kLargestMaxCoc);
   }
   source = with_repeated(source, square);
-  return without_repeated(filtered_in_border(std::move(source), options, of_square, pool), square);
+  source = filtered_in_border(std::move(source), options, of_square, pool);
+  used.unmixed_pixels = of_square.unmixed_pixels;
+  return without_repeated(source, square);
 }
 
 }  // namespace

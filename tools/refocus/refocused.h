@@ -16,9 +16,10 @@ struct UsedRefocus {
   const Method* method = nullptr;
   std::optional<AutoMethod> choice{};  ///< of auto
   float largest_circle_px = 0.0f;
-  double brightest = 0.0;   ///< of the file's colours
-  int light_power = 0;      ///< they are filtered divided by 2^light_power
-  std::size_t cut = 0;      ///< and so many values cut to the largest half
+  double brightest = 0.0;  ///< of the file's colours
+  int light_power = 0;     ///< they are filtered divided by 2^light_power
+  std::size_t cut = 0;     ///< and so many values cut to the largest half
+  std::size_t unmixed_pixels = 0;
   bool by_rows = false;     ///< read, filtered and written a band of rows at a time
   std::string why_whole{};  ///< why not
 };

@@ -137,6 +137,10 @@ std::string refocus_text(const RefocusOptions& options, const PictureSources& so
     text += "method           " + std::string{used.method->name} + ", circles up to " +
             short_number(static_cast<double>(used.settings.max_coc_px)) + " px radius\n";
   }
+  if (options.unmix) {
+    text += "edges            " + std::to_string(used.unmixed_pixels) + " pixels taken apart" +
+            (used.unmixed_pixels == 0 ? ": the colours are not mixed there\n" : "\n");
+  }
   if (used.by_rows) text += "read             a band of rows at a time\n";
   if (!used.why_whole.empty()) text += "read             whole: " + used.why_whole + "\n";
   return text;
@@ -161,6 +165,7 @@ std::string refocus_json(const RefocusOptions& options, const PictureSources& so
             {"filled_pixels", static_cast<std::int64_t>(depth.filled)},
             {"background_pixels", static_cast<std::int64_t>(depth.background)},
             {"mended_edge_pixels", static_cast<std::int64_t>(depth.mended.edge_pixels)},
+            {"unmixed_pixels", static_cast<std::int64_t>(used.unmixed_pixels)},
             {"focus_m", lens.coc.focus_m},
             {"focus_from", lens.focus_from},
             {"radius_at_infinity_px", lens.coc.radius_at_infinity_px},
@@ -216,6 +221,7 @@ PictureNotes refocus_notes(const RefocusOptions& options, const UsedRefocus& use
                                     {"threshold", options.highlights->threshold}};
     }
     if (options.border != Border::by_method) notes.method["border"] = name_of(options.border);
+    if (options.unmix) notes.method["unmix_edges"] = true;
   }
   if (used.lens.has_lens) notes.lens = {used.lens.lens, used.lens.coc_scale, notes.fov_y_degrees};
   return notes;

@@ -392,3 +392,39 @@ TEST_CASE("render: --depth-output writes metres beside the picture") {
       render("figures", directory.file("b.npy"), {"--depth-output", directory.file("b.hdr")}), 2,
       {"--depth-output"});
 }
+
+TEST_CASE(
+    "refocus: --unmix-edges takes apart what a renderer mixed, and leaves one sample a pixel") {
+  const TemporaryDirectory directory;
+  const std::string large = directory.file("large.npy"), small = directory.file("small.npy");
+  REQUIRE(run_program({"render", "figures", "--size", "384x256", "--show", "pinhole", "-o", large})
+              .status == 0);
+  const Image fine = read_image_file(large).image;
+  Image mixed = make_image(Format::rgba16f, 96, 64), aliased = mixed;
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 96; ++x) {
+      glm::vec4 sum{};
+      for (int i = 0; i < 16; ++i) sum += load_texel(fine, 4 * x + i % 4, 4 * y + i / 4) / 16.0f;
+      const glm::vec4 centre = load_texel(fine, 4 * x + 2, 4 * y + 2);
+      sum.w = centre.w;
+      store_texel(mixed, x, y, sum, {});
+      store_texel(aliased, x, y, centre, {});
+    }
+  }
+  const auto unmixed = [&](const Image& picture, const Words& more) {
+    const Bytes bytes = encode_npy(picture);
+    write_file(small, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    const Words options = joined(kLens, joined({"--unmix-edges"}, more));
+    const json report = refocus_json_of(directory, {"small.npy"}, options);
+    CHECK(report["by_rows"] == false);
+    return report["unmixed_pixels"].get<int>();
+  };
+  CHECK(unmixed(mixed, {}) > 100);
+  CHECK(unmixed(mixed, {"--border", "mirror"}) > 100);
+  CHECK(unmixed(mixed, {"--method", "two-pass"}) > 100);
+  CHECK(unmixed(aliased, {}) == 0);
+  const Image as_it_is = refocus_of(directory, {"small.npy"}, kLens);
+  CHECK(equal(refocus_of(directory, {"small.npy"}, joined(kLens, {"--unmix-edges"})), as_it_is));
+  check_refused(directory, {"refocus", small, "--unmix-edges", "--arithmetic", "fixed"}, 2,
+                {"--unmix-edges", "--arithmetic"});
+}
