@@ -191,10 +191,13 @@ void apply(const Method& method, const DofInput& input, const ImageView& result,
     if (method.pipeline != nullptr) return run_pipeline(*method.pipeline, of, to, pool);
     method.filter(of, to, pool);
   };
-  filter(input, result);
   DofInput of_edges = input;
   if (method.filter == pinhole) of_edges.settings.coc.radius_at_infinity_px = 0.0f;
-  smooth_edges(of_edges, result, pool);
+  const std::optional<Image> diffused = diffused_scene(of_edges, pool);
+  DofInput of_filter = input;
+  if (diffused) of_filter.scene = *diffused;
+  filter(of_filter, result);
+  smooth_edges(of_edges, diffused, result, pool);
   lay_transparent_over(input, result, filter, pool);
 }
 

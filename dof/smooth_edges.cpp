@@ -5,6 +5,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <optional>
+#include <utility>
 
 #include "raster/numbers/half.h"
 #include "raster/pipeline/multisample.h"
@@ -61,6 +62,13 @@ std::array<std::span<const std::uint16_t>, 3> rows_about(const ConstImageView& p
 
 constexpr int kRowsAtOnce = 8;  // that a thread takes
 
+bool same_texel(std::span<const std::uint16_t> a, std::span<const std::uint16_t> b, int x) {
+  const std::size_t at = 4 * static_cast<std::size_t>(x);
+  return std::equal(a.begin() + static_cast<std::ptrdiff_t>(at),
+                    a.begin() + static_cast<std::ptrdiff_t>(at + 4),
+                    b.begin() + static_cast<std::ptrdiff_t>(at));
+}
+
 // The neighbour that shows a surface: of the nearest ring that has one, that of the nearest depth.
 std::optional<Neighbour> find_shown(const std::array<std::span<const std::uint16_t>, 3>& scene,
                                     int x, const Side& side) {
@@ -86,10 +94,14 @@ std::optional<Neighbour> find_shown(const std::array<std::span<const std::uint16
   return {};
 }
 
+// NaN of a depth of infinity.
+float blur_px(const DofSettings& settings, float depth_m) {
+  return std::min(std::fabs(coc_radius_px(settings.coc, depth_m)), settings.max_coc_px);
+}
+
 // How far a surface is in focus: 1 without a circle, 0 from a radius of a pixel on.
 float sharpness(const DofSettings& settings, float depth_m) {
-  const float radius =
-      std::min(std::fabs(coc_radius_px(settings.coc, depth_m)), settings.max_coc_px);
+  const float radius = blur_px(settings, depth_m);
   return radius < 1.0f ? 1.0f - radius : 0.0f;
 }
 
@@ -118,22 +130,83 @@ glm::vec3 filtered_surface(const EdgeRows& rows, int x, const glm::vec4& surface
 
 }  // namespace
 
+void show_others(std::span<const int> pixels, std::span<const std::uint16_t> other,
+                 std::span<std::uint16_t> scene) {
+  for (const int x : pixels) {
+    const std::ptrdiff_t at = std::ptrdiff_t{4} * x;
+    std::copy_n(other.begin() + at, 4, scene.begin() + at);
+  }
+}
+
+EdgeDiffusion::EdgeDiffusion(int width)
+    : before_(static_cast<std::size_t>(width) + 2), now_(before_.size()) {}
+
+void EdgeDiffusion::next_row(std::span<const std::uint16_t> scene,
+                             std::span<const std::uint16_t> other,
+                             std::span<const std::uint8_t> coverage, const DofSettings& settings,
+                             std::vector<int>& show_other) {
+  std::swap(before_, now_);
+  std::fill(now_.begin(), now_.end(), 0);
+  for (std::size_t x = 0; x < coverage.size(); ++x) {
+    const int part = coverage[x];
+    if (part == 0) continue;
+    const auto column = static_cast<int>(x);
+    const float own_m = texel_of(scene, column).w, other_m = texel_of(other, column).w;
+    const bool is_nearer = own_m <= other_m;
+    if (!(blur_px(settings, std::fmin(own_m, other_m)) >= kDiffusedPx)) continue;
+    int wanted = is_nearer ? 255 - part : part;
+    // Each error is taken once: none is lost along an edge.
+    for (int* error : {&now_[x], &before_[x], &before_[x + 1], &before_[x + 2]}) {
+      wanted += std::exchange(*error, 0);
+    }
+    const bool shows_nearer = wanted >= 128;
+    now_[x + 1] = std::clamp(wanted - (shows_nearer ? 255 : 0), -255, 255);
+    if (shows_nearer != is_nearer) show_other.push_back(column);
+  }
+}
+
+std::optional<Image> diffused_scene(const DofInput& input, ThreadPool& pool) {
+  if (input.edges.coverage.texels == nullptr) return {};
+  const ConstImageView& scene = input.scene;
+  EdgeDiffusion diffusion{scene.width};
+  std::vector<std::vector<int>> rows(static_cast<std::size_t>(scene.height));
+  bool differs = false;
+  for (int y = 0; y < scene.height; ++y) {
+    std::vector<int>& of_row = rows[static_cast<std::size_t>(y)];
+    diffusion.next_row(row<std::uint16_t>(scene, y), row<std::uint16_t>(input.edges.other, y),
+                       row<std::uint8_t>(input.edges.coverage, y), input.settings, of_row);
+    differs = differs || !of_row.empty();
+  }
+  if (!differs) return {};
+  Image diffused = make_image(Format::rgba16f, scene.width, scene.height);
+  for_each_row(pool, scene.height, kRowsAtOnce, [&](int y) {
+    const auto from = row<std::uint16_t>(scene, y);
+    const auto to = row<std::uint16_t>(diffused, y);
+    std::copy(from.begin(), from.end(), to.begin());
+    show_others(rows[static_cast<std::size_t>(y)], row<std::uint16_t>(input.edges.other, y), to);
+  });
+  return diffused;
+}
+
 void smooth_row(const EdgeRows& rows, const DofSettings& settings, HalfRounding rounding,
                 std::vector<SmoothPixel>& changed) {
   const auto width = static_cast<int>(rows.coverage.size());
   for (int x = 0; x < width; ++x) {
     const std::uint8_t coverage = rows.coverage[static_cast<std::size_t>(x)];
     if (coverage == 0) continue;
-    const glm::vec4 shown = texel_of(rows.scene[1], x), other = texel_of(rows.other, x);
+    const auto at = static_cast<std::size_t>(x);
+    const bool is_diffused = !same_texel(rows.scene[1], rows.own, x);
+    const glm::vec4 shown = texel_of(rows.scene[1], x);
+    const glm::vec4 other = texel_of(is_diffused ? rows.own : rows.other, x);
     const Sides sides = sides_of(shown.w, other.w);
     const glm::vec3 a = filtered_surface(rows, x, shown, sides.shown, settings);
     const glm::vec3 b = filtered_surface(rows, x, other, sides.other, settings);
-    const float part = static_cast<float>(coverage) / 255.0f;
+    const float part = static_cast<float>(is_diffused ? 255 - coverage : coverage) / 255.0f;
     const glm::vec3 colour = a * (1.0f - part) + b * part;
-    const auto at = static_cast<std::size_t>(x);
     changed.push_back({x,
                        {float_to_half(colour.x, rounding), float_to_half(colour.y, rounding),
-                        float_to_half(colour.z, rounding), rows.filtered[1][4 * at + 3]}});
+                        float_to_half(colour.z, rounding),
+                        (is_diffused ? rows.own : rows.filtered[1])[4 * at + 3]}});
   }
 }
 
@@ -154,13 +227,17 @@ void take_shown_colours(const ConstImageView& scene, const ConstImageView& cover
   });
 }
 
-void smooth_edges(const DofInput& input, const ImageView& filtered, ThreadPool& pool) {
+void smooth_edges(const DofInput& input, const std::optional<Image>& diffused,
+                  const ImageView& filtered, ThreadPool& pool) {
   if (input.edges.coverage.texels == nullptr) return;
   const int height = filtered.height;
   std::vector<std::vector<SmoothPixel>> changed(static_cast<std::size_t>(height));
   const ConstImageView before = filtered;
+  ConstImageView scene = input.scene;
+  if (diffused) scene = *diffused;
   for_each_row(pool, height, kRowsAtOnce, [&](int y) {
-    const EdgeRows rows{.scene = rows_about(input.scene, y),
+    const EdgeRows rows{.scene = rows_about(scene, y),
+                        .own = row<std::uint16_t>(input.scene, y),
                         .filtered = rows_about(before, y),
                         .other = row<std::uint16_t>(input.edges.other, y),
                         .coverage = row<std::uint8_t>(input.edges.coverage, y)};

@@ -7,8 +7,12 @@
 // the filter. So whatever a method does to a surface, its edge has too: sharp against a blurred
 // background, or blurred.
 //
-// Known failures: what is thinner than a pixel, and shown by none, has its own colour as far as it
-// is in focus, and vanishes in the blur.
+// What is thinner than a pixel is shown by some centres and missed by others: blurred, a strand of
+// hair becomes beads. So where the nearer of two surfaces is blurred, which of them a pixel shows
+// to the filter follows its part of the pixel, by diffusion of the error along the edge (after
+// Floyd and Steinberg 1976): a strand keeps its light.
+//
+// Known failures: what is thinner than a pixel and blurred by less than kDiffusedPx.
 
 #include <array>
 #include <cmath>
@@ -40,6 +44,7 @@ inline bool is_step(std::optional<float> before, float a, float b, std::optional
 /// and below; at the picture's border they are the row itself.
 struct EdgeRows {
   std::array<std::span<const std::uint16_t>, 3> scene;
+  std::span<const std::uint16_t> own;  ///< of the input, before EdgeDiffusion
   std::array<std::span<const std::uint16_t>, 3> filtered;
   std::span<const std::uint16_t> other;
   std::span<const std::uint8_t> coverage;
@@ -51,7 +56,34 @@ struct SmoothPixel {
   std::array<std::uint16_t, 4> texel;
 };
 
-/// Appends the pixels that change, from left to right. Alpha stays the filtered picture's.
+/// The nearer surface's circle, from which on edges are diffused. Smaller ones leave dots.
+inline constexpr float kDiffusedPx = 2.5f;
+
+/// Chooses what pixels on edges show to a filter, row by row from the top.
+class EdgeDiffusion {
+ public:
+  explicit EdgeDiffusion(int width);
+
+  /// Of the next row of an input: appends the pixels that are to show the other surface.
+  void next_row(std::span<const std::uint16_t> scene, std::span<const std::uint16_t> other,
+                std::span<const std::uint8_t> coverage, const DofSettings& settings,
+                std::vector<int>& show_other);
+
+ private:
+  // Of pixels of the row before and of this one, in 1/255 of a pixel, a pixel in from the left:
+  // what the nearer surface should have had and did not get.
+  std::vector<int> before_, now_;
+};
+
+/// Gives those pixels of a row their other surface.
+void show_others(std::span<const int> pixels, std::span<const std::uint16_t> other,
+                 std::span<std::uint16_t> scene);
+
+/// The picture that a filter gets, if it differs from `input.scene`.
+std::optional<Image> diffused_scene(const DofInput& input, ThreadPool& pool);
+
+/// Appends the pixels that change, from left to right. Alpha is the filtered picture's, and of the
+/// input where that showed another surface.
 void smooth_row(const EdgeRows& rows, const DofSettings& settings, HalfRounding rounding,
                 std::vector<SmoothPixel>& changed);
 
@@ -60,8 +92,10 @@ void smooth_row(const EdgeRows& rows, const DofSettings& settings, HalfRounding 
 void take_shown_colours(const ConstImageView& scene, const ConstImageView& coverage,
                         const ImageView& other, ThreadPool& pool);
 
-/// Smooths the edges of `filtered`, made from `input`; without DofInput::edges it does nothing. A
-/// lens without circles, as of a picture that nothing blurs, has radius_at_infinity_px 0.
-void smooth_edges(const DofInput& input, const ImageView& filtered, ThreadPool& pool);
+/// Smooths the edges of `filtered`, made from `input`, or from its diffused_scene(); without
+/// DofInput::edges it does nothing. A lens without circles, as of a picture that nothing blurs, has
+/// radius_at_infinity_px 0.
+void smooth_edges(const DofInput& input, const std::optional<Image>& diffused,
+                  const ImageView& filtered, ThreadPool& pool);
 
 }  // namespace softfocus

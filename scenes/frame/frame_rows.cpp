@@ -70,13 +70,14 @@ struct FrameRows::State {
   /// Rows that wait for the filter, or for the row below to be filtered; the first has been
   /// smoothed, but for the picture's.
   struct EdgeRow {
-    std::vector<std::uint16_t> scene, other, filtered;
+    std::vector<std::uint16_t> own, scene, other, filtered;
     std::vector<std::uint8_t> coverage;
   };
   std::deque<EdgeRow> waiting{};
   int first_waiting = 0;  ///< its row in the picture
   int filtered_rows = 0, smoothed_rows = 0;
   DofSettings edge_settings{};
+  EdgeDiffusion diffusion;
 
   State(const Shot& of, ThreadPool& with, std::function<void(FrameStage)> told)
       : shot(of),
@@ -84,7 +85,8 @@ struct FrameRows::State {
         on_stage(std::move(told)),
         prepared(prepare_scene(*of.scene, of.profile, with)),
         picture(without_texels(Format::rgba16f, of.width, of.height)),
-        depth(without_texels(Format::r32f, of.width, of.height)) {
+        depth(without_texels(Format::r32f, of.width, of.height)),
+        diffusion(of.width) {
     DrawnFrame as_drawn{
         .view = camera_matrices(shot.scene->camera, shot.frame, shot.width, shot.height)};
     as_drawn.parts.opaque = without_texels(Format::rgba16f, shot.width, shot.height);
@@ -140,11 +142,16 @@ struct FrameRows::State {
 
   void keep_edges() {
     const auto copy = [](const auto& from) { return std::vector(from.begin(), from.end()); };
+    std::vector<int> pixels;
     for (int y = 0; y < drawn.height; ++y) {
-      waiting.push_back({.scene = copy(row<std::uint16_t>(drawn, y)),
-                         .other = copy(row<std::uint16_t>(other, y)),
-                         .filtered = {},
-                         .coverage = copy(row<std::uint8_t>(coverage, y))});
+      EdgeRow& edges = waiting.emplace_back();
+      edges.own = copy(row<std::uint16_t>(drawn, y));
+      edges.other = copy(row<std::uint16_t>(other, y));
+      edges.coverage = copy(row<std::uint8_t>(coverage, y));
+      edges.scene = edges.own;
+      pixels.clear();
+      diffusion.next_row(edges.own, edges.other, edges.coverage, edge_settings, pixels);
+      show_others(pixels, edges.other, edges.scene);
     }
   }
 
@@ -170,6 +177,7 @@ struct FrameRows::State {
       rows.filtered[static_cast<std::size_t>(i)] = of.filtered;
     }
     const EdgeRow& own = edge_row(y);
+    rows.own = own.own;
     rows.other = own.other;
     rows.coverage = own.coverage;
     std::vector<SmoothPixel> changed;
@@ -193,11 +201,14 @@ struct FrameRows::State {
     }
     tell(FrameStage::drawing);
     draw_band();
+    const int first = first_waiting + static_cast<int>(waiting.size());
     if (shot.samples > 1) keep_edges();
     if (on_drawn) on_drawn(drawn);
     if (stream) tell(FrameStage::filtering);
     for (int y = 0; y < drawn.height; ++y) {
-      const std::span<const std::uint16_t> next = row<std::uint16_t>(std::as_const(drawn), y);
+      const std::span<const std::uint16_t> next =
+          shot.samples > 1 ? std::span<const std::uint16_t>{edge_row(first + y).scene}
+                           : row<std::uint16_t>(std::as_const(drawn), y);
       stream ? put_row(*stream, next, pool, sink) : keep(next);
     }
   }

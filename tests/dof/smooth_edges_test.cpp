@@ -126,8 +126,55 @@ TEST_CASE("smooth edges: a thing thinner than a pixel shows as far as it is in f
     return load_texel(apply(*find_method("pinhole"), picture.input(coc), pool), 9, 4).x;
   };
   CHECK(at_wire(0.0f, 4.0f) == doctest::Approx(kFar.x + 0.2f * (kNear.x - kFar.x)).epsilon(0.001));
-  const Image blurred = apply(*find_method("two-pass"), picture.input({8.0f, 8.0f}), pool);
-  CHECK(load_texel(blurred, 9, 4).x == doctest::Approx(kFar.x).epsilon(0.001));
+}
+
+TEST_CASE("smooth edges: a strand thinner than a pixel keeps its light in the blur, evenly") {
+  constexpr int kColumns = 120, kRows = 400;
+  constexpr double kStrand = 0.3;  // of a pixel
+  ThreadPool pool{2};
+  // Upright, where no centre shows it, leaning, and level.
+  for (const double lean : {0.0, 0.05, 0.2}) {
+    CAPTURE(lean);
+    EdgePicture picture;
+    for (Image* image : {&picture.scene, &picture.other}) {
+      *image = make_image(Format::rgba16f, kColumns, kRows);
+    }
+    picture.coverage = make_image(Format::r8, kColumns, kRows);
+    double light = 0.0;
+    for (int y = 0; y < kRows; ++y) {
+      const double left = 20.6 + lean * y;
+      for (int x = 0; x < kColumns; ++x) {
+        const double part =
+            std::clamp(std::min(left + kStrand, x + 1.0) - std::max(left, x + 0.0), 0.0, 1.0);
+        const bool shows = left <= x + 0.5 && x + 0.5 < left + kStrand;
+        store_texel(picture.scene, x, y, shows ? kNear : kFar, {});
+        store_texel(picture.other, x, y, shows ? kFar : kNear, {});
+        row<std::uint8_t>(picture.coverage, y)[static_cast<std::size_t>(x)] =
+            static_cast<std::uint8_t>(255.0 * (shows ? 1.0 - part : part) + 0.5);
+        if (y >= 20 && y < kRows - 20) light += part;
+      }
+    }
+    for (const char* method : {"disc-layers", "ray-distribution-buffer"}) {
+      CAPTURE(method);
+      // A near circle of 5 pixels.
+      const Image blurred = apply(*find_method(method), picture.input({5.0f / 3.0f, 8.0f}), pool);
+      double sum = 0.0, most = 0.0, least = 1.0;
+      for (int y = 20; y < kRows - 20; ++y) {
+        double of_row = 0.0;
+        for (int x = 0; x < kColumns; ++x) {
+          of_row +=
+              static_cast<double>((load_texel(blurred, x, y).x - kFar.x) / (kNear.x - kFar.x));
+          CHECK(load_texel(blurred, x, y).w == load_texel(picture.scene, x, y).w);
+        }
+        sum += of_row;
+        most = std::max(most, of_row);
+        least = std::min(least, of_row);
+      }
+      CHECK(sum == doctest::Approx(light).epsilon(0.03));
+      CHECK(most < 1.5 * kStrand);
+      CHECK(least > 0.5 * kStrand);
+    }
+  }
 }
 
 TEST_CASE("smooth edges: surfaces of one depth keep the filter's colour, and mix their own") {
@@ -206,7 +253,7 @@ TEST_CASE("smooth edges: what is blurred over a sharp edge hides what the edge's
   }
   Image smooth = hidden;
   ThreadPool pool{1};
-  smooth_edges(picture.input({0.0f, 2.0f}), smooth, pool);
+  smooth_edges(picture.input({0.0f, 2.0f}), {}, smooth, pool);
   CHECK(equal(smooth, hidden));
 }
 
