@@ -14,13 +14,14 @@
 
 #include "dof/smooth_edges.h"
 #include "raster/numbers/half.h"
-#include "raster/pipeline/multisample.h"
+#include "raster/threads/float_environment.h"
 #include "raster/threads/loops.h"
 
 namespace softfocus {
 namespace {
 
 constexpr int kUnmixedRows = 8;
+constexpr float kLargestHalf = 65504.0f;
 
 struct Step {
   int x, y;
@@ -195,6 +196,8 @@ std::optional<TwoSurfaces> take_apart(const Source& source, int x, int y, float 
       std::clamp((by_colour * kDoubt + by_depth * doubt) / (kDoubt + doubt), 0.0f, 1.0f);
   // As a byte holds it, so that both together are the pixel again.
   found.part = std::floor(part * 255.0f + 0.5f) / 255.0f;
+  found.is_clear = doubt < 0.02f;
+  found.mixes = by_colour > 0.2f && by_colour < 0.8f;
   const float rest_of = 1.0f - found.part;
   const glm::vec3 rest = colour - (mine.mean * rest_of + its.mean * found.part);
   found.residual = glm::dot(rest, rest);
@@ -207,16 +210,19 @@ std::optional<TwoSurfaces> take_apart(const Source& source, int x, int y, float 
   found.other = its.mean + share * (found.part * its_varies);
   // No light is negative: then the other has all that is left.
   for (int c = 0; c < 3; ++c) {
+    if (colour[c] < 0.0f) continue;
     if (found.own[c] < 0.0f) {
       found.own[c] = 0.0f;
-      found.other[c] = colour[c] / found.part;
+      if (found.part > 0.0f) found.other[c] = colour[c] / found.part;
     } else if (found.other[c] < 0.0f) {
       found.other[c] = 0.0f;
-      found.own[c] = colour[c] / rest_of;
+      if (rest_of > 0.0f) found.own[c] = colour[c] / rest_of;
     }
   }
-  found.is_clear = doubt < 0.02f;
-  found.mixes = by_colour > 0.2f && by_colour < 0.8f;
+  const auto is_colour = [](const glm::vec3& of) {
+    return std::max({of.x, of.y, of.z}) <= kLargestHalf;
+  };
+  if (!is_colour(found.own) || !is_colour(found.other)) return {};
   return found;
 }
 
@@ -240,8 +246,9 @@ std::optional<TwoSurfaces> two_surfaces(const Source& source, int x, int y) {
 /// How far two surfaces are blurred apart: 0 if a ghost of one in the other could not be seen.
 float blur_apart(const DofSettings& settings, float depth_m, float other_m) {
   const auto radius = [&](float metres) {
-    return std::clamp(coc_radius_px(settings.coc, metres), -settings.max_coc_px,
-                      settings.max_coc_px);
+    const float px = std::isinf(metres) ? settings.coc.radius_at_infinity_px
+                                        : coc_radius_px(settings.coc, metres);
+    return std::clamp(px, -settings.max_coc_px, settings.max_coc_px);
   };
   const float apart_px = std::fabs(radius(depth_m) - radius(other_m));
   return std::clamp((apart_px - 2.0f) / 3.0f, 0.0f, 1.0f);
@@ -257,6 +264,7 @@ void soften(TwoSurfaces& found, const glm::vec3& colour, float part) {
 
 UnmixedEdges unmix_edges(const ImageView& scene, const DofSettings& settings,
                          const Profile& profile, ThreadPool& pool) {
+  const DefaultFloatEnvironment environment;
   const Source source = source_of(scene, pool);
   struct Taken {
     int x;

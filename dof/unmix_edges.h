@@ -5,8 +5,8 @@
 // blurred thing, stairs on a sharp one. So a pixel on an edge is taken apart into its two surfaces'
 // colours and their parts, as smooth_edges.h takes them.
 //
-// Known failures: what shows nowhere without a mixture, as a strand of hair, has the colour of its
-// purest pixel; a pixel of three surfaces has two; edges of like colours stay as they are.
+// Known failures: a pixel of three surfaces has two, or stays as it is, as do edges of like colours
+// and a strand of hair over a texture.
 
 #include <cstddef>
 

@@ -478,6 +478,12 @@ bool draws_in_lanes(const PreparedScene& prepared) {
          chunks_of_scene(*prepared.scene) <= kPassChunks;
 }
 
+// In lanes, or from a picture with a row for each sample.
+bool finds_edges(const PreparedScene& prepared, int height, int samples) {
+  return prepared.pass.profile.coverage == Coverage::edge_functions &&
+         (draws_in_lanes(prepared) || height * samples <= kMaxImageSize);
+}
+
 // Of a picture that has been drawn without them.
 void find_scene_edges(PreparedScene& prepared, const CameraMatrices& camera, double frame,
                       const Image& picture, const EdgeTargets& to, ThreadPool& pool) {
@@ -522,8 +528,9 @@ void draw_layers(PreparedScene& prepared, const CameraMatrices& camera, double f
   }
   std::vector<Image*> layers{&picture};
   for (Image& layer : behind) layers.push_back(&layer);
-  const bool finds_edges = pass.profile.coverage == Coverage::edge_functions;
-  if (edges != nullptr && !finds_edges) edges->samples = 1;
+  if (edges != nullptr && !finds_edges(prepared, picture.height, edges->samples)) {
+    edges->samples = 1;
+  }
   if (edges == nullptr || edges->samples == 1) {
     draw_lit(prepared, camera, frame, layers, pool);
     return;

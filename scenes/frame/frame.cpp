@@ -307,7 +307,8 @@ Frame make_picture(const Shot& shot, const DrawnFrame& drawn, const std::optiona
               .lens = lens,
               .method = shot.method,
               .sampling = shot.sampling,
-              .shaded_share = drawn.shaded_share};
+              .shaded_share = drawn.shaded_share,
+              .samples = drawn.parts.edges.samples};
   const UsedLens used = lens.value_or(UsedLens{});
   if (shot.show != Show::image) {
     tell(hooks, FrameStage::filtering);

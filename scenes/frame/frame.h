@@ -67,7 +67,8 @@ struct Shot {
   double frame = 0.0;
   int width = 0, height = 0;  ///< of the picture
   int supersample = 1;        ///< 1 or 2: what is drawn has so many times the width and height
-  int samples = 1;            ///< of a pixel, 1, 4 or 8: several make edges smooth
+  /// Of a pixel, 1, 4 or 8: several make edges smooth. 1 where they cannot be found.
+  int samples = 1;
   Show show = Show::image;
   MethodChoice method = {};
   Arithmetic arithmetic = Arithmetic::floats;  ///< of two-pass
@@ -130,6 +131,7 @@ struct Frame {
   std::optional<AutoPicture> chosen{};      ///< of auto, without its picture
   SampleSums sums{};                        ///< of a shard
   std::optional<double> shaded_share{};     ///< DrawnFrame's
+  int samples = 1;                          ///< of a pixel
 };
 
 enum class FrameStage : std::uint8_t {

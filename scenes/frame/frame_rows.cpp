@@ -93,6 +93,7 @@ struct FrameRows::State {
     frame.view = as_drawn.view;
     frame.method = shot.method;
     frame.sampling = shot.sampling;
+    frame.samples = shot.samples;
     frame.lens = focused_lens(shot, as_drawn, pool);
     RenderPass& pass = prepared.pass;
     pass.targets.colour[0] = &picture;

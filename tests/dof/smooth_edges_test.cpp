@@ -353,6 +353,37 @@ TEST_CASE("unmixed edges: put together again they are the picture, and one sampl
   }
 }
 
+TEST_CASE("unmixed edges: black, bright and infinitely far things stay numbers") {
+  ThreadPool pool{1};
+  for (int seed = 1; seed <= 20; ++seed) {
+    test::Random random{static_cast<std::uint64_t>(seed)};
+    Image picture = make_image(Format::rgba16f, 64, 64);
+    for (int y = 0; y < 64; ++y) {
+      for (int x = 0; x < 64; ++x) {
+        const auto channel = [&] {
+          const double value = random.between(0.0, 4.0);
+          return value < 1.0 ? 0.0f : value < 2.0 ? 0.5f : value < 3.0 ? 1.0f : 64000.0f;
+        };
+        const bool is_near = (x * 7 + y * 3 + seed) % 23 < 4;
+        const float depth = is_near ? 2.0f : seed % 2 == 0 ? 60000.0f : INFINITY;
+        store_texel(picture, x, y, {channel(), channel(), channel(), depth}, {});
+      }
+    }
+    Image again = picture;
+    const UnmixedEdges edges = unmix_edges(again, kStrong, {}, pool);
+    if (edges.pixels == 0) continue;
+    for (int y = 0; y < 64; ++y) {
+      for (int x = 0; x < 64; ++x) {
+        const glm::vec3 own{load_texel(again, x, y)};
+        REQUIRE(std::isfinite(own.x + own.y + own.z));
+        if (row<std::uint8_t>(edges.coverage, y)[static_cast<std::size_t>(x)] == 0) continue;
+        const glm::vec3 other{load_texel(edges.other, x, y)};
+        REQUIRE(std::isfinite(other.x + other.y + other.z));
+      }
+    }
+  }
+}
+
 TEST_CASE("unmixed edges: a renderer's picture comes nearer to its own lens's") {
   ThreadPool pool{2};
   for (const char* name : {"figures", "foliage"}) {

@@ -173,8 +173,8 @@ void add_compare_options(CLI::App& parser, CompareOptions& options) {
                 options.measures.pixels_per_degree);
   begin_group(parser, "Regions");
   add_flag(parser, "--regions",
-           "Measure by region too: silhouette band, near field, focus, far field, by the "
-           "depth in B's alpha and the lens",
+           "Measure by region too: silhouette band, near field, focus, far field, edges in focus, "
+           "by the depth in B's alpha and the lens",
            options.regions);
   add_text(parser, "--depth", "FILE",
            "Picture whose alpha is the depth for --regions (default: B, or A if B has none)",

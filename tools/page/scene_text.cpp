@@ -161,7 +161,7 @@ Json command_text(const Opened& opened, const FrameSettings& settings) {
   const bool is_image = settings.show == Show::image;
   text += is_image ? " --method " + std::string{settings.method.name()}
                    : " --show " + std::string{name_of(settings.show)};
-  if (is_image ? filter != nullptr : settings.show == Show::pinhole) text += " --multisample 1";
+  if (is_image && filter != nullptr) text += " --multisample 1";
   if (!is_image && settings.show != Show::coc) return text;
   if (!needs_file) {
     if (settings.focus_at) {

@@ -254,6 +254,9 @@ void complete(RefocusOptions& options, const CLI::App& parser) {
   check_budget(parser, options.method.name());
   check_goal(parser, options.method);
   check_arithmetic(options.arithmetic, options.method.name(), false);
+  if (options.unmix && options.show != RefocusShow::image) {
+    throw UsageError("--unmix-edges and --show of a map exclude each other");
+  }
   if (options.unmix && options.arithmetic != Arithmetic::floats) {
     throw UsageError("--unmix-edges and --arithmetic exclude each other: edges are of floats");
   }

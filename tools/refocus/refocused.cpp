@@ -182,6 +182,11 @@ PictureOnItsWay filtered_square(PictureOnItsWay source, double aspect,
                                 const RefocusOptions& options, UsedRefocus& used,
                                 ThreadPool& pool) {
   if (aspect == 1.0) return filtered_in_border(std::move(source), options, used, pool);
+  if (options.unmix) {
+    throw UsageError(
+        "--unmix-edges: the picture's pixels are not square, and would be repeated; "
+        "leave it out");
+  }
   const SquarePixels square = square_pixels(source.picture.width, source.picture.height, aspect);
   UsedRefocus of_square = used;
   if (aspect < 1.0) {  // circles are in heights, of which a square pixel is a part
@@ -191,9 +196,7 @@ PictureOnItsWay filtered_square(PictureOnItsWay source, double aspect,
     of_square.settings.max_coc_px = std::min(of_square.settings.max_coc_px * more, kLargestMaxCoc);
   }
   source = with_repeated(source, square);
-  source = filtered_in_border(std::move(source), options, of_square, pool);
-  used.unmixed_pixels = of_square.unmixed_pixels;
-  return without_repeated(source, square);
+  return without_repeated(filtered_in_border(std::move(source), options, of_square, pool), square);
 }
 
 }  // namespace

@@ -138,8 +138,7 @@ std::string refocus_text(const RefocusOptions& options, const PictureSources& so
             short_number(static_cast<double>(used.settings.max_coc_px)) + " px radius\n";
   }
   if (options.unmix) {
-    text += "edges            " + std::to_string(used.unmixed_pixels) + " pixels taken apart" +
-            (used.unmixed_pixels == 0 ? ": the colours are not mixed there\n" : "\n");
+    text += "edges            " + std::to_string(used.unmixed_pixels) + " pixels taken apart\n";
   }
   if (used.by_rows) text += "read             a band of rows at a time\n";
   if (!used.why_whole.empty()) text += "read             whole: " + used.why_whole + "\n";

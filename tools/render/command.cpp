@@ -266,7 +266,6 @@ Rendered make_rendered(const RenderOptions& options, const Scene& scene, double 
   const Shot shot = asked_shot(options, scene, sequence);
   RenderRecord record{.scene_name = scene.name,
                       .scene_title = scene.title,
-                      .samples = shot.samples,
                       .triangles = triangle_count(scene),
                       .camera = scene.camera,
                       .effects = shot.effects,
@@ -319,8 +318,7 @@ Scene loaded_scene(const RenderOptions& options, Progress& progress, double& ms,
     for (const std::string& note : scene.notes) tell(note);
   }
   check_shadow_memory(scene);
-  if (has_transparent(scene)) check_transparent_memory(options);
-  if (has_soft_shadows(scene)) check_soft_memory(options);
+  check_scene_memory(options, scene);
   return scene;
 }
 

@@ -250,8 +250,11 @@ void settle_samples(RenderOptions& options, const CLI::App& parser) {
   options.samples_are_given = is_given(parser, "--multisample");
   const std::string why = why_one_sample(options);
   if (!options.samples_are_given) {
-    // A driver's profile is for its picture, and what a filter reads has one surface a pixel.
-    const bool is_for_others = options.profile != Profile{} || options.show == Show::pinhole;
+    // A driver's profile and one's own shaders are for their picture, and what a filter reads has
+    // one surface a pixel.
+    const Method* const filter = options.method.filter;
+    const bool is_for_others = options.profile != Profile{} || options.show == Show::pinhole ||
+                               (filter != nullptr && filter->pipeline != nullptr);
     if (!why.empty() || is_for_others) options.samples = 1;
   } else if (options.samples > 1 && !why.empty()) {
     throw UsageError("--multisample" + why);
@@ -296,8 +299,10 @@ constexpr std::uint64_t kSoftBytesPerPixel = 3 * 8;
 /// draws the velocity (12).
 constexpr std::uint64_t kHistoryBytesPerPixel = 4 * 8 + 4 + 4 + 12;
 
-/// And for edges: another surface and its part.
-constexpr std::uint64_t kEdgeBytesPerPixel = 8 + 1;
+/// And for edges: another surface and its part, and what the filter sees. Where they are not found
+/// in lanes, a picture of each sample with its depth.
+constexpr std::uint64_t kEdgeBytesPerPixel = 8 + 1 + 8;
+constexpr std::uint64_t kSampleBytesPerPixel = 12;
 
 std::uint64_t bytes_per_pixel(const RenderOptions& options) {
   const std::vector<ChosenEffect>& effects = options.effects.effects;
@@ -342,12 +347,22 @@ void settle_shadows(const RenderOptions& options, Scene& scene) {
       ": draws no shadows; --shadows none would leave them out");
 }
 
-void check_transparent_memory(const RenderOptions& options) {
-  check_render_memory(options, bytes_per_pixel(options) + kTransparentBytesPerPixel);
+namespace {
+
+/// Whether samples are drawn as a picture of their own, with a row for each.
+bool has_sample_rows(const Scene& scene) {
+  return has_shaders(scene) || chunks_of_scene(scene) > kPassChunks;
 }
 
-void check_soft_memory(const RenderOptions& options) {
-  check_render_memory(options, bytes_per_pixel(options) + layers_of(options) * kSoftBytesPerPixel);
+}  // namespace
+
+void check_scene_memory(const RenderOptions& options, const Scene& scene) {
+  const auto samples = static_cast<std::uint64_t>(options.samples > 1 ? options.samples : 0);
+  const std::uint64_t more =
+      (has_transparent(scene) ? kTransparentBytesPerPixel : 0) +
+      (has_soft_shadows(scene) ? layers_of(options) * kSoftBytesPerPixel : 0) +
+      (has_sample_rows(scene) ? samples * kSampleBytesPerPixel : 0);
+  if (more > 0) check_render_memory(options, bytes_per_pixel(options) + more);
 }
 
 PictureSize drawn_size(const RenderOptions& options) {
@@ -491,6 +506,13 @@ ShotLens asked_lens(const RenderOptions& options, const Scene& scene) {
 
 Shot asked_shot(const RenderOptions& options, const Scene& scene, FrameSequence& sequence) {
   const bool is_of_frames = checked_effect_of_frames(options, scene).has_value();
+  if (options.samples_are_given && options.samples > 1 && has_sample_rows(scene) &&
+      drawn_size(options).height * options.samples > kMaxImageSize) {
+    throw UsageError(
+        "--multisample: materials with shaders, and more than a million and a half triangles, are "
+        "drawn with a row for each sample, and " +
+        std::to_string(kMaxImageSize) + " rows are the most; give a smaller --size");
+  }
   Shot shot{.scene = &scene,
             .frame = options.frame,
             .width = options.size.width,

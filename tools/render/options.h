@@ -35,7 +35,7 @@ struct RenderOptions {
   PictureSize size;
   EffectOptions effects;  ///< on the finished picture
   int supersample = 1;    ///< what is drawn and filtered has so many times the width and height
-  int samples = 4;        ///< of a pixel; complete() makes it 1 where edges have no place
+  int samples = 4;        ///< of a pixel; complete() makes it 1 where options leave edges no place
   bool samples_are_given = false;
   double frame = 0.0;
   std::optional<ShadowKind> shadows;  ///< of all lights, in place of what the scene says
@@ -94,11 +94,9 @@ void settle_shadows(const RenderOptions& options, Scene& scene);
 /// callers if the picture may be made by rows.
 void check_whole_memory(const RenderOptions& options);
 
-/// Throws UsageError if there is not the memory for a scene with transparent surfaces.
-void check_transparent_memory(const RenderOptions& options);
-
-/// Throws UsageError if there is not the memory for a scene with soft shadows.
-void check_soft_memory(const RenderOptions& options);
+/// Throws UsageError if there is not the memory for what the scene needs besides: transparent
+/// surfaces, soft shadows, samples of materials with shaders.
+void check_scene_memory(const RenderOptions& options, const Scene& scene);
 
 /// --autofocus may stand without a value, and CLI11 would take the next argument for
 /// it, a scene perhaps. So what follows is joined to it with "=": the pixel, or "centre".

@@ -152,7 +152,9 @@ std::string text_report(const RenderOptions& options, const RenderRecord& record
     text += line("Supersample",
                  std::to_string(options.supersample) + " x " + std::to_string(options.supersample));
   }
-  if (record.samples > 1) text += line("Multisample", std::to_string(record.samples));
+  if (record.frame.samples > 1) {
+    text += line("Multisample", std::to_string(record.frame.samples));
+  }
   text += line("Triangles", std::to_string(record.triangles));
   text += line("Method", std::string{options.method.name()});
   if (options.arithmetic != Arithmetic::floats) {
@@ -207,7 +209,7 @@ std::string json_report(const RenderOptions& options, const RenderRecord& record
       {"width", options.size.width},
       {"height", options.size.height},
       {"supersample", options.supersample},
-      {"multisample", record.samples},
+      {"multisample", record.frame.samples},
       {"triangles", record.triangles},
       {"method", options.method.name()},
       {"show", name_of(options.show)},

@@ -25,7 +25,6 @@ struct StageTimes {
 struct RenderRecord {
   std::string scene_name{};
   std::string scene_title{};
-  int samples = 1;  ///< of a pixel
   std::size_t triangles = 0;
   Camera camera{};                      ///< at the frame
   std::string made{};                   ///< of a large picture: by rows, or why not

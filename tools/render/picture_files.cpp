@@ -28,7 +28,7 @@ Json method_json(const RenderOptions& options, const RenderRecord& record) {
   const MethodChoice& method = record.frame.method;
   Json json{{"name", method.name()}};
   if (options.supersample > 1) json["supersample"] = options.supersample;
-  if (record.samples > 1) json["multisample"] = record.samples;
+  if (record.frame.samples > 1) json["multisample"] = record.frame.samples;
   if (record.frame.sampled) {
     json["samples"] = record.frame.sampled->samples;
     if (record.frame.sampled->mean_samples) {

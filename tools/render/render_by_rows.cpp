@@ -69,6 +69,7 @@ void render_by_rows(const RenderOptions& options, const Shot& shot, RenderRecord
   record.frame.lens = frame.lens;
   record.frame.method = frame.method;
   record.frame.sampling = frame.sampling;
+  record.frame.samples = frame.samples;
   record.camera.position = frame.view.eye;
 
   std::optional<CutCircles> cut;

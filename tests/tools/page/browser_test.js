@@ -308,7 +308,7 @@ async function shader_drawn(page, before) {
 }
 
 const hash_by_pipeline = (file) => JSON.parse(execFileSync(program, [
-  "render", "figures", "--size", "512x512", "--method",
+  "render", "figures", "--size", "512x512", "--multisample", "1", "--method",
   path.join(__dirname, "../../../scenes/pipelines", file), "--json", "-o", path.join(work, "own.npy"),
 ], { encoding: "utf8", stdio: ["ignore", "pipe", "ignore"] })).picture_hash;
 

@@ -54,7 +54,7 @@ const folder = fs.mkdtempSync(path.join(os.tmpdir(), "softfocus-page-"));
 
 function native_hash(words) {
   const output = execFileSync(program, ["render", ...words, "-o", path.join(folder, "picture.npy"),
-                                        "--json"], { stdio: ["ignore", "pipe", "ignore"] });
+                                        "--multisample", "1", "--json"], { stdio: ["ignore", "pipe", "ignore"] });
   return JSON.parse(output).picture_hash;
 }
 

@@ -157,7 +157,8 @@ TEST_CASE("a command repeats the frame, or there is none") {
                    R"("coc_scale":1,"max_coc_px":24)")
             .text() ==
         "softfocus render figures -o picture.png --json --size 32x16 --frame 3 --method two-pass "
-        "--multisample 1 --autofocus 16,15 --focal-length 50 --f-number 2.5 --coc-scale 1 --max-coc 24");
+        "--multisample 1 --autofocus 16,15 --focal-length 50 --f-number 2.5 --coc-scale 1 "
+        "--max-coc 24");
   CHECK(command_of(R"("dof":false)").text().ends_with("--show pinhole"));
   CHECK(
       command_of(R"("method":"filtered-views","max_coc_px":24)").text().ends_with("--samples 64"));

@@ -10,8 +10,8 @@ namespace {
 
 std::vector<std::string> render(const TemporaryDirectory& directory,
                                 std::vector<std::string> options) {
-  options.insert(options.begin(),
-                 {"render", "figures", "--size", "96x64", "-o", directory.file("a.npy")});
+  options.insert(options.begin(), {"render", "figures", "--multisample", "1", "--size", "96x64",
+                                   "-o", directory.file("a.npy")});
   return options;
 }
 

@@ -69,6 +69,7 @@ TEST_CASE("help names every option of every subcommand, with units") {
                         "--holes background|near|far|infinity|refuse",
                         "--upsample colour|nearest",
                         "--mend-edges",
+                        "--unmix-edges",
                         "--mend-bands",
                         "--focus METRES",
                         "--focus-at X,Y",

@@ -153,6 +153,30 @@ TEST_CASE("render: --multisample makes edges smooth in shadow, and of materials 
   }
 }
 
+TEST_CASE("render: where there is no room for a row of each sample, a pixel has one") {
+  if (!missing_glsl().empty()) return;
+  const TemporaryDirectory pictures;
+  write_file(pictures.file("red.frag"),
+             "#version 330\nout vec4 c;\nvoid main() { c = vec4(1, 0, 0, 1); }\n");
+  const std::string scene = pictures.file("shaders.toml"), picture = pictures.file("a.npy");
+  write_file(scene,
+             "[camera]\nposition = [0, 1, 2]\ntarget = [0, 0, 0]\n"
+             "[material.m]\nfragment = \"red.frag\"\n"
+             "[[object]]\nshape = \"cube\"\nmaterial = \"m\"\n");
+  const Words tall{"render", scene, "--size", "4x4100", "-o", picture, "--method", "two-pass"};
+  Words words = tall;
+  words.emplace_back("--json");
+  const ProgramRun run = run_program(words);
+  REQUIRE(run.status == 0);
+  CHECK(nlohmann::json::parse(run.out)["multisample"] == 1);
+  words = tall;
+  words.insert(words.end(), {"--multisample", "4"});
+  const ProgramRun refused = run_program(words);
+  CHECK(refused.status == 2);
+  CHECK(refused.err.find("--multisample") != refused.err.npos);
+  CHECK(refused.err.find("16384") != refused.err.npos);
+}
+
 TEST_CASE("render: --multisample of many frames gives each frame's own edges") {
   const TemporaryDirectory pictures;
   const auto render = [&](const Words& more) {

@@ -425,6 +425,10 @@ TEST_CASE(
   CHECK(unmixed(aliased, {}) == 0);
   const Image as_it_is = refocus_of(directory, {"small.npy"}, kLens);
   CHECK(equal(refocus_of(directory, {"small.npy"}, joined(kLens, {"--unmix-edges"})), as_it_is));
-  check_refused(directory, {"refocus", small, "--unmix-edges", "--arithmetic", "fixed"}, 2,
+  const std::string output = directory.file("refused.npy");
+  check_refused(directory,
+                {"refocus", small, "-o", output, "--unmix-edges", "--arithmetic", "fixed"}, 2,
                 {"--unmix-edges", "--arithmetic"});
+  check_refused(directory, {"refocus", small, "-o", output, "--unmix-edges", "--show", "coc"}, 2,
+                {"--unmix-edges", "--show"});
 }
