@@ -57,7 +57,7 @@ struct SmoothPixel {
 };
 
 /// The nearer surface's circle, from which on edges are diffused. Smaller ones leave dots.
-inline constexpr float kDiffusedPx = 2.5f;
+inline constexpr float kDiffusedPx = 3.0f;
 
 /// Chooses what pixels on edges show to a filter, row by row from the top.
 class EdgeDiffusion {

@@ -208,6 +208,7 @@ StressShot shot_of(const StressFrame& frame, std::string_view method, int sample
                   .drawn = {},
                   .lens = {.settings = frame.settings}};
   made.drawn.parts.opaque = frame.sharp;
+  made.drawn.parts.edges = frame.edges;
   if (!frame.scene) return made;
   const StressScene& scene = *frame.scene;
   made.shot.scene = &scene.scene;

@@ -182,6 +182,111 @@ double lamp_light_lost(const StressAnswer& answer) {
   return std::fabs(lamp_light(answer.result[0], right) / lamp_light(answer.truth[0], right) - 1.0);
 }
 
+constexpr int kEdgeSamples = 4;  // of a pixel, where edges are to be smooth
+
+/// The line x = middle + y tan(lean), counted from the picture's middle.
+constexpr double kLeanDegrees = 7.0, kLeanSine = 0.12186934340514748,
+                 kLeanCosine = 0.992546151641322;
+
+/// How far right of that line a pixel's middle is, square to it.
+double from_leaning_line(int size, double x, double y) {
+  return (x - size / 2.0) * kLeanCosine - (y - size / 2.0) * kLeanSine;
+}
+
+/// Adds a rectangle from `left` to `right` of the line.
+void add_leaning(Scene& scene, int size, double left, double right, double depth_m, float colour) {
+  // It is turned about its upper left corner, which lies on the line through `left`.
+  const double up = size * 1.0;
+  const double corner_x = size / 2.0 - up * kLeanSine + left * kLeanCosine;
+  const double corner_y = size / 2.0 - up * kLeanCosine - left * kLeanSine;
+  add_rectangle(scene, size, {corner_x, corner_y, corner_x + (right - left), corner_y + 2.0 * up},
+                depth_m, grey(colour));
+  scene.objects.back().rotation_degrees.z = kLeanDegrees;
+}
+
+/// The part of a pixel left of the line.
+double left_of_line(int size, int x, int y) {
+  constexpr int kFine = 16;
+  int inside = 0;
+  for (int i = 0; i < kFine * kFine; ++i) {
+    const double u = x + (i % kFine + 0.5) / kFine, v = y + (i / kFine + 0.5) / kFine;
+    inside += from_leaning_line(size, u, v) < 0.0 ? 1 : 0;
+  }
+  return static_cast<double>(inside) / (kFine * kFine);
+}
+
+/// A sharp bright half with a leaning outline before a blurred dark wall.
+StressTrial make_smooth_edge(double radius, int size, ThreadPool& pool) {
+  Scene scene = flat_scene();
+  add_backdrop(scene, size, kStressFarM, grey(kDark));
+  add_leaning(scene, size, -2.0 * size, 0.0, kStressFocusM, kBright);
+  StressFrame frame =
+      drawn_frame(std::move(scene), 2.0 * radius, radius, size, pool, kStressFocusM, kEdgeSamples);
+  frame.truth = grey_picture_of(
+      size, [&](int x, int y) { return kDark + kContrast * left_of_line(size, x, y); },
+      [](int, int) { return kStressFocusM; });
+  return single(std::move(frame));
+}
+
+/// Of the pixels that the line crosses.
+double stairs(const StressAnswer& answer) {
+  const int size = answer.truth[0].width;
+  double sum = 0.0;
+  int count = 0;
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      if (std::fabs(from_leaning_line(size, x + 0.5, y + 0.5)) > 0.5) continue;
+      const double apart = light_at(answer.result[0], x, y) - light_at(answer.truth[0], x, y);
+      sum += apart * apart;
+      ++count;
+    }
+  }
+  return std::sqrt(sum / count) / kContrast;
+}
+
+constexpr double kStrandPx = 0.5;  // of width
+
+/// A blurred strand, leaning and thinner than a pixel, before a sharp wall.
+StressTrial make_strand(double radius, int size, ThreadPool& pool) {
+  Scene scene = flat_scene();
+  add_backdrop(scene, size, kStressFocusM, grey(kDark));
+  add_leaning(scene, size, -0.5 * kStrandPx, 0.5 * kStrandPx, kStressNearM, kBright);
+  StressFrame frame =
+      drawn_frame(std::move(scene), radius, radius, size, pool, kStressFocusM, kEdgeSamples);
+  frame.truth = grey_picture_of(
+      size,
+      [&](int x, int y) {
+        const double from = from_leaning_line(size, x + 0.5, y + 0.5);
+        return kDark + kContrast * (disc_left_of((0.5 * kStrandPx - from) / radius) -
+                                    disc_left_of((-0.5 * kStrandPx - from) / radius));
+      },
+      [](int, int) { return kStressNearM; });
+  return single(std::move(frame));
+}
+
+/// Of the light of as many rows as the circle is wide, wherever they are.
+double beads(const StressAnswer& answer) {
+  const int size = answer.truth[0].width;
+  const auto [top, bottom] = middle_half(size);
+  const int height = static_cast<int>(std::ceil(2.0 * answer.severity));
+  const auto light = [&](const Image& picture, int y) {
+    double sum = 0.0;
+    for (int x = 0; x < size; ++x) sum += light_at(picture, x, y) - double{kDark};
+    return sum;
+  };
+  double most = 0.0;
+  for (int y = top; y + height <= bottom; ++y) {
+    double got = 0.0, wanted = 0.0;
+    for (int i = 0; i < height; ++i) {
+      got += light(answer.result[0], y + i);
+      wanted += light(answer.truth[0], y + i);
+    }
+    const double error = std::fabs(got / wanted - 1.0);
+    if (!(error <= most)) most = error;  // NaN is no number that holds
+  }
+  return most;
+}
+
 constexpr StressParameter kEdgeRadius{"radius", "px"};
 constexpr std::string_view kWeber = "about the least step at an edge that an eye sees";
 
@@ -219,6 +324,15 @@ constexpr std::array kEdgeCases{
                "The visible half of the circle has its light.", kEdgeRadius, "light gained or lost",
                "of the visible light", 0.1, "a seventh of a stop", kEdgeRadii, 16, 0,
                make_lamp_at_edge, lamp_light_lost},
+    StressCase{"smooth-edge", "A sharp leaning outline before a blurred wall, 4 samples a pixel",
+               "A pixel on the outline has the light of both sides, each by its part.", kEdgeRadius,
+               "RMS error on the outline", "of the contrast", 0.1, "stairs have .29", kEdgeRadii, 8,
+               0, make_smooth_edge, stairs},
+    StressCase{"strand",
+               "A blurred strand, half a pixel wide, before a sharp wall, 4 samples a pixel",
+               "The strand has its light all along.", kEdgeRadius,
+               "largest error of the light of a circle's width of rows", "of the strand's light",
+               0.15, "beads that an eye sees", kEdgeRadii, 8, 0, make_strand, beads},
 };
 
 }  // namespace

@@ -82,14 +82,22 @@ std::uint32_t add_pattern(Scene& scene, std::string_view pattern, int cells, glm
 }
 
 StressFrame drawn_frame(Scene scene, double radius_at_infinity_px, double largest_px, int size_px,
-                        ThreadPool& pool, double focus_m) {
+                        ThreadPool& pool, double focus_m, int samples) {
   StressFrame frame;
   frame.settings = uncut_settings(radius_at_infinity_px, focus_m, largest_px);
   StressScene with{std::move(scene), {}, focus_m, 0.0};
   with.camera = camera_matrices(with.scene.camera, 0.0, size_px, size_px);
   // dof/lens.h, solved for the aperture.
   with.aperture_m = radius_at_infinity_px * focus_m * metres_per_pixel(size_px);
-  frame.sharp = draw_scene(with.scene, with.camera, 0.0, size_px, size_px, Profile{}, pool);
+  if (samples == 1) {
+    frame.sharp = draw_scene(with.scene, with.camera, 0.0, size_px, size_px, Profile{}, pool);
+  } else {
+    PreparedScene prepared = prepare_scene(with.scene, Profile{}, pool);
+    FrameParts parts;
+    draw_parts(prepared, with.camera, 0.0, size_px, size_px, 1, parts, pool, {}, samples);
+    frame.sharp = std::move(parts.opaque);
+    frame.edges = std::move(parts.edges);
+  }
   frame.scene = std::move(with);
   return frame;
 }

@@ -16,6 +16,7 @@
 #include "dof/dof.h"
 #include "raster/images/image.h"
 #include "raster/images/texel.h"
+#include "scenes/draw/draw_scene.h"
 #include "scenes/draw/frame_matrices.h"
 #include "scenes/scene.h"
 
@@ -40,7 +41,8 @@ struct StressScene {
 
 /// One picture to blur. Most trials have one, those of motion and of resolution two.
 struct StressFrame {
-  Image sharp;  ///< RGBA16F, depth in alpha
+  Image sharp;         ///< RGBA16F, depth in alpha
+  EdgePictures edges;  ///< of `sharp`, if the case has them
   DofSettings settings;
   std::optional<StressScene> scene;  ///< none: the case is made as a picture
   Image truth;                       ///< without pixels where the lens's views are the truth
@@ -171,8 +173,9 @@ std::uint32_t add_pattern(Scene& scene, std::string_view pattern, int cells, glm
                           glm::vec3 second);
 
 /// Draws a scene as methods get it. `largest_px`: the circles are not cut up to that radius.
+/// `samples` of a pixel: several find edges.
 StressFrame drawn_frame(Scene scene, double radius_at_infinity_px, double largest_px, int size_px,
-                        ThreadPool& pool, double focus_m = kStressFocusM);
+                        ThreadPool& pool, double focus_m = kStressFocusM, int samples = 1);
 
 /// A trial of one frame.
 StressTrial single(StressFrame frame);
