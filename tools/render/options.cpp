@@ -6,7 +6,9 @@
 
 #include "raster/images/image.h"
 #include "raster/pipeline/merge.h"
+#include "scenes/draw/draw_scene.h"
 #include "scenes/draw/frame_matrices.h"
+#include "scenes/draw/light_points.h"
 #include "scenes/draw/shadowed_layers.h"
 #include "scenes/parameters.h"
 #include "tools/cli/errors.h"

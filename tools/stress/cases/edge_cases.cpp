@@ -209,8 +209,8 @@ double left_of_line(int size, int x, int y) {
   constexpr int kFine = 16;
   int inside = 0;
   for (int i = 0; i < kFine * kFine; ++i) {
-    const double u = x + (i % kFine + 0.5) / kFine, v = y + (i / kFine + 0.5) / kFine;
-    inside += from_leaning_line(size, u, v) < 0.0 ? 1 : 0;
+    const int column = i % kFine, row = i / kFine;
+    inside += from_leaning_line(size, x + (column + 0.5) / kFine, y + (row + 0.5) / kFine) < 0.0;
   }
   return static_cast<double>(inside) / (kFine * kFine);
 }
