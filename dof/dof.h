@@ -99,7 +99,8 @@ struct DofInput {
   /// (transparent.h).
   std::span<const TransparentLayer> transparent = {};
   /// Of `scene`, which shows one surface in each pixel; without a coverage none. apply() smooths
-  /// the edges of what the method makes of it (smooth_edges.h).
+  /// the edges of what the method makes of it, and without `objects` and `behind` chooses which of
+  /// two surfaces the method sees (smooth_edges.h).
   EdgeSurfaces edges = {};
   /// Signed radii in pixels, row by row from the top, in place of those that the lens gives, or
   /// empty. Only methods that take_radii read them.

@@ -184,6 +184,20 @@ const char* input_error(const DofInput& input, const ConstImageView& result) {
   return nullptr;
 }
 
+namespace {
+
+/// What a method has to make: a kept pixel on an edge takes colours of its neighbours.
+KeptPart with_neighbours(const DofInput& input) {
+  const KeptPart& kept = input.kept;
+  if (kept.width == 0 || input.edges.coverage.texels == nullptr) return kept;
+  const int left = std::max(kept.x - 1, 0), top = std::max(kept.y - 1, 0);
+  const int right = std::min(kept.x + kept.width + 1, input.scene.width);
+  const int bottom = std::min(kept.y + kept.height + 1, input.scene.height);
+  return {left, top, right - left, bottom - top};
+}
+
+}  // namespace
+
 void apply(const Method& method, const DofInput& input, const ImageView& result, ThreadPool& pool) {
   assert(input_error(input, result) == nullptr);
   const DefaultFloatEnvironment environment;
@@ -193,11 +207,12 @@ void apply(const Method& method, const DofInput& input, const ImageView& result,
   };
   DofInput of_edges = input;
   if (method.filter == pinhole) of_edges.settings.coc.radius_at_infinity_px = 0.0f;
-  const std::optional<Image> diffused = diffused_scene(of_edges, pool);
+  const DiffusedScene diffused = diffused_scene(of_edges, pool);
   DofInput of_filter = input;
-  if (diffused) of_filter.scene = *diffused;
+  of_filter.scene = diffused.scene;
+  of_filter.kept = with_neighbours(input);
   filter(of_filter, result);
-  smooth_edges(of_edges, diffused, result, pool);
+  smooth_edges(of_edges, diffused.scene, result, pool);
   lay_transparent_over(input, result, filter, pool);
 }
 

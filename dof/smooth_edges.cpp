@@ -19,6 +19,10 @@ glm::vec4 texel_of(std::span<const std::uint16_t> row, int x) {
   return {half_to_float(v[0]), half_to_float(v[1]), half_to_float(v[2]), half_to_float(v[3])};
 }
 
+float depth_of(std::span<const std::uint16_t> row, int x) {
+  return half_to_float(row[4 * static_cast<std::size_t>(x) + 3]);
+}
+
 // A pixel and its neighbours, the nearest first.
 struct Neighbour {
   int dx, dy;
@@ -81,7 +85,7 @@ std::optional<Neighbour> find_shown(const std::array<std::span<const std::uint16
       const int column = x + kAround[i].dx;
       if (column < 0 || column >= width) continue;
       const auto row = static_cast<std::size_t>(1 + kAround[i].dy);
-      const float inverse = 1.0f / texel_of(scene[row], column).w;
+      const float inverse = 1.0f / depth_of(scene[row], column);
       if (!side.has(inverse)) continue;
       const float away = std::fabs(inverse - side.surface);
       if (found && !(away < least)) continue;
@@ -139,35 +143,47 @@ void show_others(std::span<const int> pixels, std::span<const std::uint16_t> oth
 }
 
 EdgeDiffusion::EdgeDiffusion(int width)
-    : before_(static_cast<std::size_t>(width) + 2), now_(before_.size()) {}
+    : run_before_(static_cast<std::size_t>(width) + 2), run_(run_before_.size()) {}
 
 void EdgeDiffusion::next_row(std::span<const std::uint16_t> scene,
                              std::span<const std::uint16_t> other,
                              std::span<const std::uint8_t> coverage, const DofSettings& settings,
                              std::vector<int>& show_other) {
-  std::swap(before_, now_);
-  std::fill(now_.begin(), now_.end(), 0);
+  std::swap(run_before_, run_);
+  std::swap(owed_before_, owed_);
+  std::fill(run_.begin(), run_.end(), 0);
+  owed_.assign(1, 0);
+  constexpr int kMost = 170;  // that is owed: two thirds of a pixel
   for (std::size_t x = 0; x < coverage.size(); ++x) {
     const int part = coverage[x];
     if (part == 0) continue;
     const auto column = static_cast<int>(x);
-    const float own_m = texel_of(scene, column).w, other_m = texel_of(other, column).w;
-    const bool is_nearer = own_m <= other_m;
-    if (!(blur_px(settings, std::fmin(own_m, other_m)) >= kDiffusedPx)) continue;
-    int wanted = is_nearer ? 255 - part : part;
-    // Each error is taken once: none is lost along an edge.
-    for (int* error : {&now_[x], &before_[x], &before_[x + 1], &before_[x + 2]}) {
-      wanted += std::exchange(*error, 0);
+    const float own_m = depth_of(scene, column), other_m = depth_of(other, column);
+    // Surfaces of one depth are blurred alike.
+    if (is_one_surface(own_m, other_m) ||
+        !(blur_px(settings, std::fmin(own_m, other_m)) >= kDiffusedPx)) {
+      continue;
     }
-    const bool shows_nearer = wanted >= 128;
-    now_[x + 1] = std::clamp(wanted - (shows_nearer ? 255 : 0), -255, 255);
-    if (shows_nearer != is_nearer) show_other.push_back(column);
+    if (run_[x] == 0) owed_.push_back(0);
+    run_[x + 1] = owed_.size() - 1;
+    int& owed = owed_.back();
+    // What a run above still owes, the first pixel that touches it takes.
+    for (std::size_t i = x; i < x + 3; ++i) owed += std::exchange(owed_before_[run_before_[i]], 0);
+    const bool is_nearer = own_m <= other_m;
+    owed += is_nearer ? -part : part;
+    const bool shows_other = is_nearer ? owed < -kMost : owed > kMost;
+    if (!shows_other) continue;
+    owed += is_nearer ? 255 : -255;
+    show_other.push_back(column);
   }
 }
 
-std::optional<Image> diffused_scene(const DofInput& input, ThreadPool& pool) {
-  if (input.edges.coverage.texels == nullptr) return {};
+DiffusedScene diffused_scene(const DofInput& input, ThreadPool& pool) {
   const ConstImageView& scene = input.scene;
+  DiffusedScene diffused{scene};
+  if (input.edges.coverage.texels == nullptr) return diffused;
+  // Layers behind and objects' numbers are those of the surfaces that centres show.
+  if (!input.behind.empty() || !input.objects.empty()) return diffused;
   EdgeDiffusion diffusion{scene.width};
   std::vector<std::vector<int>> rows(static_cast<std::size_t>(scene.height));
   bool differs = false;
@@ -177,14 +193,20 @@ std::optional<Image> diffused_scene(const DofInput& input, ThreadPool& pool) {
                        row<std::uint8_t>(input.edges.coverage, y), input.settings, of_row);
     differs = differs || !of_row.empty();
   }
-  if (!differs) return {};
-  Image diffused = make_image(Format::rgba16f, scene.width, scene.height);
+  if (!differs) return diffused;
+  const std::size_t count = 4 * static_cast<std::size_t>(scene.width);
+  diffused.memory = make_row_memory<std::uint16_t>(count * static_cast<std::size_t>(scene.height),
+                                                   &pool.memory());
+  const ImageView copy =
+      view_of(Format::rgba16f, reinterpret_cast<std::byte*>(diffused.memory.get()), scene.width,
+              scene.height);
   for_each_row(pool, scene.height, kRowsAtOnce, [&](int y) {
     const auto from = row<std::uint16_t>(scene, y);
-    const auto to = row<std::uint16_t>(diffused, y);
+    const auto to = row<std::uint16_t>(copy, y);
     std::copy(from.begin(), from.end(), to.begin());
     show_others(rows[static_cast<std::size_t>(y)], row<std::uint16_t>(input.edges.other, y), to);
   });
+  diffused.scene = copy;
   return diffused;
 }
 
@@ -218,7 +240,7 @@ void take_shown_colours(const ConstImageView& scene, const ConstImageView& cover
     const std::span<std::uint16_t> to = row<std::uint16_t>(other, y);
     for (int x = 0; x < scene.width; ++x) {
       if (covered[static_cast<std::size_t>(x)] == 0) continue;
-      const Sides sides = sides_of(texel_of(rows[1], x).w, texel_of(to, x).w);
+      const Sides sides = sides_of(depth_of(rows[1], x), depth_of(to, x));
       const Neighbour at = find_shown(rows, x, sides.other).value_or(Neighbour{0, 0});
       const auto from = rows[static_cast<std::size_t>(1 + at.dy)].subspan(
           4 * static_cast<std::size_t>(x + at.dx), 3);
@@ -227,16 +249,14 @@ void take_shown_colours(const ConstImageView& scene, const ConstImageView& cover
   });
 }
 
-void smooth_edges(const DofInput& input, const std::optional<Image>& diffused,
-                  const ImageView& filtered, ThreadPool& pool) {
+void smooth_edges(const DofInput& input, const ConstImageView& diffused, const ImageView& filtered,
+                  ThreadPool& pool) {
   if (input.edges.coverage.texels == nullptr) return;
   const int height = filtered.height;
   std::vector<std::vector<SmoothPixel>> changed(static_cast<std::size_t>(height));
   const ConstImageView before = filtered;
-  ConstImageView scene = input.scene;
-  if (diffused) scene = *diffused;
   for_each_row(pool, height, kRowsAtOnce, [&](int y) {
-    const EdgeRows rows{.scene = rows_about(scene, y),
+    const EdgeRows rows{.scene = rows_about(diffused, y),
                         .own = row<std::uint16_t>(input.scene, y),
                         .filtered = rows_about(before, y),
                         .other = row<std::uint16_t>(input.edges.other, y),

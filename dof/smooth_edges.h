@@ -12,7 +12,8 @@
 // to the filter follows its part of the pixel, by diffusion of the error along the edge (after
 // Floyd and Steinberg 1976): a strand keeps its light.
 //
-// Known failures: what is thinner than a pixel and blurred by less than kDiffusedPx.
+// Known failures: what is thinner than a pixel and blurred by less than kDiffusedPx, or by a method
+// that gets layers behind or objects' numbers.
 
 #include <array>
 #include <cmath>
@@ -57,7 +58,7 @@ struct SmoothPixel {
 };
 
 /// The nearer surface's circle, from which on edges are diffused. Smaller ones leave dots.
-inline constexpr float kDiffusedPx = 3.0f;
+inline constexpr float kDiffusedPx = 2.0f;
 
 /// Chooses what pixels on edges show to a filter, row by row from the top.
 class EdgeDiffusion {
@@ -70,17 +71,23 @@ class EdgeDiffusion {
                 std::vector<int>& show_other);
 
  private:
-  // Of pixels of the row before and of this one, in 1/255 of a pixel, a pixel in from the left:
-  // what the nearer surface should have had and did not get.
-  std::vector<int> before_, now_;
+  // Runs are pixels of a row that follow each other. Of each pixel, one in from the left: its run's
+  // number, from 1 on; of each run, in 1/255 of a pixel: what the nearer surface should have had
+  // and did not get.
+  std::vector<std::size_t> run_before_, run_;
+  std::vector<int> owed_before_{0}, owed_{0};
 };
 
 /// Gives those pixels of a row their other surface.
 void show_others(std::span<const int> pixels, std::span<const std::uint16_t> other,
                  std::span<std::uint16_t> scene);
 
-/// The picture that a filter gets, if it differs from `input.scene`.
-std::optional<Image> diffused_scene(const DofInput& input, ThreadPool& pool);
+/// The picture that a filter gets: `input.scene`, or a copy in the pool's memory.
+struct DiffusedScene {
+  ConstImageView scene;
+  RowMemory<std::uint16_t> memory{};
+};
+DiffusedScene diffused_scene(const DofInput& input, ThreadPool& pool);
 
 /// Appends the pixels that change, from left to right. Alpha is the filtered picture's, and of the
 /// input where that showed another surface.
@@ -92,10 +99,10 @@ void smooth_row(const EdgeRows& rows, const DofSettings& settings, HalfRounding 
 void take_shown_colours(const ConstImageView& scene, const ConstImageView& coverage,
                         const ImageView& other, ThreadPool& pool);
 
-/// Smooths the edges of `filtered`, made from `input`, or from its diffused_scene(); without
-/// DofInput::edges it does nothing. A lens without circles, as of a picture that nothing blurs, has
+/// Smooths the edges of `filtered`, made from `input`'s diffused_scene(); without DofInput::edges
+/// it does nothing. A lens without circles, as of a picture that nothing blurs, has
 /// radius_at_infinity_px 0.
-void smooth_edges(const DofInput& input, const std::optional<Image>& diffused,
-                  const ImageView& filtered, ThreadPool& pool);
+void smooth_edges(const DofInput& input, const ConstImageView& diffused, const ImageView& filtered,
+                  ThreadPool& pool);
 
 }  // namespace softfocus

@@ -478,12 +478,6 @@ bool draws_in_lanes(const PreparedScene& prepared) {
          chunks_of_scene(*prepared.scene) <= kPassChunks;
 }
 
-// In lanes, or from a picture with a row for each sample.
-bool finds_edges(const PreparedScene& prepared, int height, int samples) {
-  return prepared.pass.profile.coverage == Coverage::edge_functions &&
-         (draws_in_lanes(prepared) || height * samples <= kMaxImageSize);
-}
-
 // Of a picture that has been drawn without them.
 void find_scene_edges(PreparedScene& prepared, const CameraMatrices& camera, double frame,
                       const Image& picture, const EdgeTargets& to, ThreadPool& pool) {
@@ -528,7 +522,13 @@ void draw_layers(PreparedScene& prepared, const CameraMatrices& camera, double f
   }
   std::vector<Image*> layers{&picture};
   for (Image& layer : behind) layers.push_back(&layer);
-  if (edges != nullptr && !finds_edges(prepared, picture.height, edges->samples)) {
+  const Isa isa = pass.isa;
+  // Drawing fragment by fragment finds no edges: without a vector unit lanes are four wide.
+  if (isa == Isa::scalar) pass.isa = Isa::baseline;
+  const bool in_lanes = draws_in_lanes(prepared);
+  pass.isa = isa;
+  if (edges != nullptr && (pass.profile.coverage != Coverage::edge_functions ||
+                           (!in_lanes && picture.height * edges->samples > kMaxImageSize))) {
     edges->samples = 1;
   }
   if (edges == nullptr || edges->samples == 1) {
@@ -538,17 +538,14 @@ void draw_layers(PreparedScene& prepared, const CameraMatrices& camera, double f
   make_sized(edges->other, picture.width, picture.height);
   make_sized(edges->coverage, picture.width, picture.height, Format::r8);
   const EdgeTargets to{edges->samples, &edges->other, &edges->coverage};
-  const Isa isa = pass.isa;
-  // Drawing fragment by fragment finds no edges: without a vector unit lanes are four wide.
-  if (isa == Isa::scalar) pass.isa = Isa::baseline;
-  if (draws_in_lanes(prepared)) {
+  if (in_lanes) {
+    if (isa == Isa::scalar) pass.isa = Isa::baseline;
     if (isa == Isa::scalar) decode_textures(prepared, pool);
     pass.edges = to;
     draw_lit(prepared, camera, frame, layers, pool);
     pass.edges.reset();
     pass.isa = isa;
   } else {
-    pass.isa = isa;
     draw_lit(prepared, camera, frame, layers, pool);
     find_scene_edges(prepared, camera, frame, picture, to, pool);
   }

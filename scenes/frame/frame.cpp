@@ -51,9 +51,26 @@ void draw_after_others(const Shot& shot, const ChosenEffect& effect, PreparedSce
   drawn.shaded_share = sequence.history.shaded_share;
 }
 
+// Of the surfaces that edges alone show.
+float largest_edge_circle_px(const EdgePictures& edges, const PixelCoc& coc) {
+  float most = 0.0f;
+  if (edges.samples == 1) return most;
+  for (int y = 0; y < edges.other.height; ++y) {
+    const auto coverage = row<std::uint8_t>(edges.coverage, y);
+    const auto texels = row<std::uint16_t>(edges.other, y);
+    for (std::size_t x = 0; x < coverage.size(); ++x) {
+      if (coverage[x] == 0) continue;
+      const float radius = std::fabs(coc_radius_px(coc, half_to_float(texels[4 * x + 3])));
+      if (radius > most) most = radius;  // NaN is none
+    }
+  }
+  return most;
+}
+
 // Of each picture that is blurred by itself.
 float largest_circle_px(const FrameParts& parts, const PixelCoc& coc, ThreadPool& pool) {
-  float most = circle_sizes(parts.opaque, coc, 0.0f, pool).largest_px;
+  float most = std::max(circle_sizes(parts.opaque, coc, 0.0f, pool).largest_px,
+                        largest_edge_circle_px(parts.edges, coc));
   for (const TransparentPicture& layer : parts.transparent) {
     most = std::max(most, circle_sizes(layer.colour, coc, 0.0f, pool).largest_px);
   }
