@@ -4,12 +4,12 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "dof/smooth_edges.h"
@@ -83,6 +83,17 @@ Source source_of(const ConstImageView& scene, ThreadPool& pool) {
   return source;
 }
 
+/// Calls `visit` with the place of each pixel that a surface's colour is taken from, and the square
+/// of its distance.
+template <class Visit>
+void for_each_around(const Source& source, int x, int y, const Visit& visit) {
+  for (int dy = -kPureReach; dy <= kPureReach; ++dy) {
+    for (int dx = -kPureReach; dx <= kPureReach; ++dx) {
+      if (source.has(x + dx, y + dy)) visit(source.at(x + dx, y + dy), dx * dx + dy * dy);
+    }
+  }
+}
+
 struct SurfaceColour {
   glm::vec3 mean{};
   float variance = 0.0f;  ///< of the three channels together
@@ -95,19 +106,14 @@ std::optional<SurfaceColour> pure_colour(const Source& source, int x, int y, flo
   const float most = 0.25f * std::fabs(surface - other);
   glm::vec3 sum{};
   float squares = 0.0f, weights = 0.0f;
-  for (int dy = -kPureReach; dy <= kPureReach; ++dy) {
-    for (int dx = -kPureReach; dx <= kPureReach; ++dx) {
-      if (!source.has(x + dx, y + dy)) continue;
-      const std::size_t at = source.at(x + dx, y + dy);
-      if (source.on_edge[at] != 0 || std::fabs(source.inverse_depths[at] - surface) > most) {
-        continue;
-      }
-      const float weight = 1.0f / static_cast<float>(1 + dx * dx + dy * dy);
-      sum += source.colours[at] * weight;
-      squares += glm::dot(source.colours[at], source.colours[at]) * weight;
-      weights += weight;
-    }
-  }
+  for_each_around(source, x, y, [&](std::size_t at, int square) {
+    if (source.on_edge[at] != 0 || std::fabs(source.inverse_depths[at] - surface) > most) return;
+    const glm::vec3& colour = source.colours[at];
+    const float weight = 1.0f / static_cast<float>(1 + square);
+    sum += colour * weight;
+    squares += glm::dot(colour, colour) * weight;
+    weights += weight;
+  });
   if (weights == 0.0f) return {};
   const glm::vec3 mean = sum * (1.0f / weights);
   return SurfaceColour{mean, std::max(squares / weights - glm::dot(mean, mean), 0.0f)};
@@ -121,21 +127,32 @@ std::optional<SurfaceColour> colour_by_light(const Source& source, int x, int y,
   const float border = 0.5f * (surface + other_inverse);
   glm::vec3 light{};
   float pixels = 0.0f, area = 0.0f;
-  for (int dy = -kPureReach; dy <= kPureReach; ++dy) {
-    for (int dx = -kPureReach; dx <= kPureReach; ++dx) {
-      if (!source.has(x + dx, y + dy)) continue;
-      const std::size_t at = source.at(x + dx, y + dy);
-      if (source.on_edge[at] == 0) continue;
-      const float depth = source.inverse_depths[at];
-      light += source.colours[at] - other.mean;
-      pixels += 1.0f;
-      if (surface > other_inverse ? depth > border : depth <= border) area += 1.0f;
-    }
-  }
+  for_each_around(source, x, y, [&](std::size_t at, int) {
+    if (source.on_edge[at] == 0) return;
+    const float depth = source.inverse_depths[at];
+    light += source.colours[at] - other.mean;
+    pixels += 1.0f;
+    if (surface > other_inverse ? depth > border : depth <= border) area += 1.0f;
+  });
   constexpr float kMostDoubt = 0.03f;
   if (!(pixels * other.variance < kMostDoubt * glm::dot(light, light))) return {};
   return SurfaceColour{glm::max(other.mean + light * (1.0f / area), glm::vec3{0.0f}),
                        other.variance * pixels / (area * area)};
+}
+
+/// The colours of two surfaces around a pixel. None if neither shows without a mixture.
+std::optional<std::pair<SurfaceColour, SurfaceColour>> colours_around(const Source& source, int x,
+                                                                      int y, float own,
+                                                                      float other) {
+  auto own_colour = pure_colour(source, x, y, own, other);
+  auto other_colour = pure_colour(source, x, y, other, own);
+  if (!own_colour && other_colour) {
+    own_colour = colour_by_light(source, x, y, own, *other_colour, other);
+  } else if (own_colour && !other_colour) {
+    other_colour = colour_by_light(source, x, y, other, *own_colour, own);
+  }
+  if (!own_colour || !other_colour) return {};
+  return std::pair{*own_colour, *other_colour};
 }
 
 /// The part of a pixel that another surface has by the depths of its neighbours.
@@ -163,51 +180,20 @@ struct TwoSurfaces {
   bool mixes = false;     ///< whether the pixel's colour is far from either
 };
 
-std::optional<TwoSurfaces> take_apart(const Source& source, int x, int y, float other) {
-  const float own = source.inverse_depths[source.at(x, y)];
-  auto own_colour = pure_colour(source, x, y, own, other);
-  auto other_colour = pure_colour(source, x, y, other, own);
-  if (!own_colour && other_colour) {
-    own_colour = colour_by_light(source, x, y, own, *other_colour, other);
-  } else if (own_colour && !other_colour) {
-    other_colour = colour_by_light(source, x, y, other, *own_colour, own);
-  }
-  if (!own_colour || !other_colour) return {};
-  const SurfaceColour &mine = *own_colour, &its = *other_colour;
-  const glm::vec3 colour = source.colours[source.at(x, y)];
-  const glm::vec3 apart = its.mean - mine.mean;
-  const float square = glm::dot(apart, apart);
-  const float light = glm::dot(mine.mean, mine.mean) + glm::dot(its.mean, its.mean);
-  constexpr float kLeastContrast = 0.05f;
-  if (!(square > kLeastContrast * kLeastContrast * light)) return {};
-  TwoSurfaces found;
-  found.other_inverse_depth = other;
-  // The likeliest part, of what the colour and the depths around say, each with its doubt.
-  constexpr float kNoise = 1e-4f;    // of the light: variance of a surface of one colour
-  constexpr float kDoubt = 0.0625f;  // variance of the part by depths
-  const float mine_varies = mine.variance + kNoise * light;
-  const float its_varies = its.variance + kNoise * light;
-  const float by_depth = part_by_depth(source, x, y, other);
-  const float by_colour = glm::dot(colour - mine.mean, apart) / square;
-  const float doubt =
-      ((1.0f - by_depth) * (1.0f - by_depth) * mine_varies + by_depth * by_depth * its_varies) /
-      square;
-  const float part =
-      std::clamp((by_colour * kDoubt + by_depth * doubt) / (kDoubt + doubt), 0.0f, 1.0f);
-  // As a byte holds it, so that both together are the pixel again.
-  found.part = std::floor(part * 255.0f + 0.5f) / 255.0f;
-  found.is_clear = doubt < 0.02f;
-  found.mixes = by_colour > 0.2f && by_colour < 0.8f;
-  const float rest_of = 1.0f - found.part;
-  const glm::vec3 rest = colour - (mine.mean * rest_of + its.mean * found.part);
+/// What the mean colours leave over of the pixel's goes to the surface that varies more. False if
+/// both vary too little for it: then a third surface has a part.
+bool share_rest(const glm::vec3& colour, const SurfaceColour& own, const SurfaceColour& other,
+                TwoSurfaces& found) {
+  const float own_part = 1.0f - found.part;
+  const glm::vec3 rest = colour - (own.mean * own_part + other.mean * found.part);
   found.residual = glm::dot(rest, rest);
-  // What is left over is of the surface that varies. Of more than that a third has a part.
-  const float varies = rest_of * rest_of * mine_varies + found.part * found.part * its_varies;
+  const float varies =
+      own_part * own_part * own.variance + found.part * found.part * other.variance;
   constexpr float kMost = 6.0f;  // of the variance
-  if (!(found.residual <= kMost * varies)) return {};
+  if (!(found.residual <= kMost * varies)) return false;
   const glm::vec3 share = rest * (1.0f / varies);
-  found.own = mine.mean + share * (rest_of * mine_varies);
-  found.other = its.mean + share * (found.part * its_varies);
+  found.own = own.mean + share * (own_part * own.variance);
+  found.other = other.mean + share * (found.part * other.variance);
   // No light is negative: then the other has all that is left.
   for (int c = 0; c < 3; ++c) {
     if (colour[c] < 0.0f) continue;
@@ -216,17 +202,48 @@ std::optional<TwoSurfaces> take_apart(const Source& source, int x, int y, float 
       if (found.part > 0.0f) found.other[c] = colour[c] / found.part;
     } else if (found.other[c] < 0.0f) {
       found.other[c] = 0.0f;
-      if (rest_of > 0.0f) found.own[c] = colour[c] / rest_of;
+      if (own_part > 0.0f) found.own[c] = colour[c] / own_part;
     }
   }
-  const auto is_colour = [](const glm::vec3& of) {
-    return std::max({of.x, of.y, of.z}) <= kLargestHalf;
-  };
-  if (!is_colour(found.own) || !is_colour(found.other)) return {};
+  for (const glm::vec3& of : {glm::abs(found.own), glm::abs(found.other)}) {
+    if (!(std::max({of.x, of.y, of.z}) <= kLargestHalf)) return false;
+  }
+  return true;
+}
+
+std::optional<TwoSurfaces> take_apart(const Source& source, int x, int y, float other) {
+  const auto colours = colours_around(source, x, y, source.inverse_depths[source.at(x, y)], other);
+  if (!colours) return {};
+  auto [mine, its] = *colours;
+  const glm::vec3 colour = source.colours[source.at(x, y)];
+  const glm::vec3 apart = its.mean - mine.mean;
+  const float square = glm::dot(apart, apart);
+  const float light = glm::dot(mine.mean, mine.mean) + glm::dot(its.mean, its.mean);
+  constexpr float kLeastContrast = 0.05f;
+  if (!(square > kLeastContrast * kLeastContrast * light)) return {};
+  constexpr float kNoise = 1e-4f;  // of the light: variance of a surface of one colour
+  mine.variance += kNoise * light;
+  its.variance += kNoise * light;
+  // The likeliest part, of what the colour and the depths around say, each with its doubt.
+  constexpr float kDoubt = 0.0625f;  // variance of the part by depths
+  const float by_depth = part_by_depth(source, x, y, other);
+  const float by_colour = glm::dot(colour - mine.mean, apart) / square;
+  const float doubt =
+      ((1.0f - by_depth) * (1.0f - by_depth) * mine.variance + by_depth * by_depth * its.variance) /
+      square;
+  const float part =
+      std::clamp((by_colour * kDoubt + by_depth * doubt) / (kDoubt + doubt), 0.0f, 1.0f);
+  TwoSurfaces found;
+  found.other_inverse_depth = other;
+  // As a byte holds it, so that both together are the pixel again.
+  found.part = std::floor(part * 255.0f + 0.5f) / 255.0f;
+  found.is_clear = doubt < 0.02f;
+  found.mixes = by_colour > 0.2f && by_colour < 0.8f;
+  if (!share_rest(colour, mine, its, found)) return {};
   return found;
 }
 
-/// Of the surfaces across edges the one of which, with its own, the pixel's colour is a mixture.
+/// A pixel with a nearer or a farther surface across an edge: that which explains its colour best.
 std::optional<TwoSurfaces> two_surfaces(const Source& source, int x, int y) {
   const float own = source.inverse_depths[source.at(x, y)];
   std::optional<TwoSurfaces> best;

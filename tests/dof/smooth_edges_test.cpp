@@ -257,6 +257,58 @@ TEST_CASE("smooth edges: what is blurred over a sharp edge hides what the edge's
   CHECK(equal(smooth, hidden));
 }
 
+TEST_CASE("smooth edges: what a filter sees is the centres' where it could not be told of others") {
+  ThreadPool pool{1};
+  // A near circle of 5 pixels, and the same surfaces nearly of one depth.
+  const PixelCoc coc{5.0f / 3.0f, 8.0f};
+  EdgePicture picture = edge_picture();
+  const DofInput input = picture.input(coc);
+  CHECK(diffused_scene(input, pool).scene.texels != input.scene.texels);
+  const std::vector<ConstImageView> behind{picture.other};
+  DofInput with_layers = input;
+  with_layers.behind = behind;
+  CHECK(diffused_scene(with_layers, pool).scene.texels == input.scene.texels);
+  const std::vector<std::uint16_t> objects(std::size_t{kEdgeWidth} * kEdgeHeight);
+  DofInput with_objects = input;
+  with_objects.objects = objects;
+  CHECK(diffused_scene(with_objects, pool).scene.texels == input.scene.texels);
+  CHECK(diffused_scene(picture.input({0.0f, 8.0f}), pool).scene.texels == input.scene.texels);
+  for (Image* image : {&picture.scene, &picture.other}) {
+    for (int y = 0; y < kEdgeHeight; ++y) {
+      for (int x = 0; x < kEdgeWidth; ++x) {
+        const glm::vec4 texel = load_texel(*image, x, y);
+        store_texel(*image, x, y, {glm::vec3{texel}, texel.w == kFar.w ? 2.05f : 2.0f}, {});
+      }
+    }
+  }
+  CHECK(diffused_scene(picture.input(coc), pool).scene.texels == picture.scene.bytes.data());
+}
+
+TEST_CASE("smooth edges: a kept part is that of the whole, to its borders") {
+  const EdgePicture picture = edge_picture();
+  ThreadPool pool{1};
+  DofInput input = picture.input({5.0f / 3.0f, 8.0f});
+  for (const char* name : {"scatter", "scatter-sorted", "layers", "disc-layers", "two-pass"}) {
+    CAPTURE(name);
+    const Method& method = *find_method(name);
+    const Image whole = apply(method, input, pool);
+    // Whose left border lies on the edge.
+    for (int left = 6; left < 16; ++left) {
+      DofInput part = input;
+      part.kept = {left, 3, 6, 10};
+      Image result = make_image(Format::rgba16f, kEdgeWidth, kEdgeHeight);
+      apply(method, part, result, pool);
+      bool equal_there = true;
+      for (int y = 3; y < 13; ++y) {
+        for (int x = left; x < left + 6; ++x) {
+          equal_there = equal_there && load_texel(result, x, y) == load_texel(whole, x, y);
+        }
+      }
+      CHECK(equal_there);
+    }
+  }
+}
+
 // A lens with circles of 12 pixels between the two surfaces above.
 constexpr DofSettings kStrong{.coc = {16.0f, 2.0f}, .max_coc_px = 32.0f};
 

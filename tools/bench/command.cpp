@@ -221,24 +221,15 @@ std::optional<StageSamples> time_command(const BenchOptions& options,
   }
   const std::filesystem::path file =
       folder / ("softfocus-bench-" + std::to_string(process_number()) + ".png");
-  std::vector<std::string> words{"render",
-                                 options.scene,
-                                 "-o",
-                                 file.string(),
-                                 "--size",
-                                 size_text(options.size),
-                                 "--method",
-                                 std::string{options.method.name()},
-                                 "--frame",
-                                 short_number(options.frame),
-                                 "--profile",
-                                 options.profile_name,
-                                 "--threads",
-                                 std::to_string(options.pool.threads),
-                                 "--isa",
-                                 std::string{isa_name(options.pool.isa)},
-                                 "--multisample",
-                                 std::to_string(options.samples)};
+  std::vector<std::string> words{"render",    options.scene,
+                                 "-o",        file.string(),
+                                 "--size",    size_text(options.size),
+                                 "--method",  std::string{options.method.name()},
+                                 "--frame",   short_number(options.frame),
+                                 "--profile", options.profile_name,
+                                 "--threads", std::to_string(options.pool.threads),
+                                 "--isa",     std::string{isa_name(options.pool.isa)}};
+  words.insert(words.end(), {"--multisample", std::to_string(options.samples)});
   if (options.max_coc_px) {
     words.insert(words.end(), {"--max-coc", short_number(*options.max_coc_px)});
   }

@@ -230,7 +230,7 @@ std::string why_one_sample(const RenderOptions& options) {
   }
   if (options.profile.coverage != Coverage::edge_functions) {
     return " and --profile " + options.profile_name +
-           " exclude each other: softpipe has one sample a pixel";
+           " exclude each other: pixels covered by scanlines, as softpipe's, have one sample";
   }
   if (options.arithmetic != Arithmetic::floats) {
     return " and --arithmetic exclude each other: edges are of floats";

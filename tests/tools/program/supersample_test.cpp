@@ -176,6 +176,27 @@ TEST_CASE("render: where there is no room for a row of each sample, a pixel has 
   CHECK(refused.err.find("16384") != refused.err.npos);
 }
 
+TEST_CASE("render: the largest circle is that of what shows between pixels' centres, too") {
+  const TemporaryDirectory pictures;
+  const std::string scene = pictures.file("strand.toml");
+  // Before a wall in focus, a strand a third of a pixel wide, between the columns of centres.
+  write_file(scene,
+             "[camera]\nposition = [0, 0, 2]\ntarget = [0, 0, 0]\nfov_degrees = 40\n"
+             "[lens]\nfocus_m = 2\ncoc_scale = 10\n[material.m]\nlit = false\n"
+             "[[object]]\nshape = \"cube\"\nsize = 9\nposition = [0, 0, -4.5]\nmaterial = \"m\"\n"
+             "[[object]]\nshape = \"cube\"\nscale = [0.004, 9, 0.004]\nposition = [0, 0, 1]\n"
+             "material = \"m\"\n");
+  const auto most = [&](const char* samples) {
+    const ProgramRun run = run_program({"render", scene, "--size", "64x64", "--multisample",
+                                        samples, "-o", pictures.file("a.npy"), "--json"});
+    CAPTURE(run.err);
+    REQUIRE(run.status == 0);
+    return nlohmann::json::parse(run.out)["lens"]["max_coc_px"].get<double>();
+  };
+  CHECK(most("1") < 1.5);
+  CHECK(most("4") > 4.0);
+}
+
 TEST_CASE("render: --multisample of many frames gives each frame's own edges") {
   const TemporaryDirectory pictures;
   const auto render = [&](const Words& more) {
