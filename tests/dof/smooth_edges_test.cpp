@@ -466,9 +466,9 @@ TEST_CASE("unmixed edges: on textures the depths around a pixel tell its parts, 
       const float near_part = std::clamp(line - static_cast<float>(x), 0.0f, 1.0f);
       parts.push_back(near_part);
       const glm::vec3 near =
-          glm::vec3{0.75f, 0.25f, 0.125f} * (1.0f + texture * random.between(-0.4f, 0.4f));
+          glm::vec3{0.6f, 0.4f, 0.3f} * (1.0f + texture * random.between(-0.4f, 0.4f));
       const glm::vec3 far =
-          glm::vec3{0.125f, 0.5f, 1.0f} * (1.0f + texture * random.between(-0.7f, 0.7f));
+          glm::vec3{0.35f, 0.5f, 0.6f} * (1.0f + texture * random.between(-0.7f, 0.7f));
       const float strand = x == 50 ? 0.4f : 0.0f;
       const glm::vec3 colour = near * near_part + far * (1.0f - near_part - strand) +
                                glm::vec3{0.2f, 0.3f, 0.6f} * strand;
