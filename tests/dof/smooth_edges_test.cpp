@@ -418,7 +418,10 @@ TEST_CASE("unmixed edges: black, bright and infinitely far things stay numbers, 
   for (int seed = 1; seed <= 20; ++seed) {
     CAPTURE(seed);
     test::Random random{static_cast<std::uint64_t>(seed)};
-    const auto channel = [&] { return std::array{0.0f, 0.5f, 1.0f, 64000.0f}[random.whole(0, 3)]; };
+    const auto channel = [&] {
+      constexpr std::array kChannels{0.0f, 0.5f, 1.0f, 64000.0f};
+      return kChannels[static_cast<std::size_t>(random.whole(0, 3))];
+    };
     const glm::vec3 near{channel(), channel(), channel()}, far{channel(), channel(), channel()};
     const float far_m = seed % 2 == 0 ? 60000.0f : INFINITY;
     Image picture = make_image(Format::rgba16f, 64, 64);
