@@ -96,7 +96,7 @@ void add_size(CLI::App& parser, PictureSize& size) {
 void add_multisample(CLI::App& parser, int& samples) {
   add_value(parser, "--multisample", "1|4|8",
             "Samples of a pixel: several make edges smooth, each side at its own depth (default: " +
-                std::to_string(samples) + ")",
+                std::to_string(samples) + (samples > 1 ? " where edges have a place)" : ")"),
             [&samples](const std::string& text) {
               if (text != "1" && text != "4" && text != "8") {
                 throw UsageError("--multisample '" + text + "' is not 1, 4 or 8");
