@@ -347,6 +347,29 @@ SOFTFOCUS_INLINE void rasterize_small(const LaneTriangle& t, const VisibilityTil
   }
 }
 
+struct Columns {
+  int begin, end;
+};
+
+// The columns of a row of parts, from the first on, beyond which an edge function is below its
+// threshold. `most`: each function less its threshold, at that of the places in the first column
+// where it is largest. One column more on each side makes up for rounding.
+SOFTFOCUS_INLINE Columns reached_columns(const std::array<double, 3>& most,
+                                         const std::array<double, 3>& per_x, int columns) {
+  double begin = 0.0, end = columns;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (per_x[i] > 0.0) {
+      begin = std::max(begin, -most[i] / per_x[i] - 1.0);
+    } else if (per_x[i] < 0.0) {
+      end = std::min(end, -most[i] / per_x[i] + 2.0);
+    } else if (most[i] < 0.0) {
+      end = 0.0;
+    }
+  }
+  return {static_cast<int>(std::min(begin, static_cast<double>(columns))) & -kPartColumns,
+          static_cast<int>(std::max(end, 0.0))};
+}
+
 template <class Writer>
 SOFTFOCUS_INLINE void rasterize_wide(const LaneTriangle& t, const VisibilityTile& tile,
                                      Writer& writer) {
@@ -367,8 +390,18 @@ SOFTFOCUS_INLINE void rasterize_wide(const LaneTriangle& t, const VisibilityTile
     return std::array{t.large->per_x[i] / 256.0, t.large->per_y[i] / 256.0};
   });
   for (int top = range.y_begin; top < range.y_end; top += kPartRows) {
-    std::array<WideLanes, 3> e = row;
-    for (int left = range.x_begin; left < range.x_end; left += kPartColumns) {
+    std::array<double, 3> most;
+    for (std::size_t i = 0; i < 3; ++i) {
+      most[i] = row[i].low[0] + std::max(t.large->per_y[i] * (kPartRows - 1), 0.0) -
+                static_cast<double>(t.thresholds[i]);
+      if constexpr (Writer::kHasSamples) most[i] += steps_of.most[i];
+    }
+    const auto [begin, end] = reached_columns(most, t.large->per_x, range.x_end - range.x_begin);
+    std::array<WideLanes, 3> e;
+    for (std::size_t i = 0; i < 3; ++i) {
+      e[i] = row[i] + per_part[i] * wide_splat(begin / kPartColumns);
+    }
+    for (int left = range.x_begin + begin; left < range.x_begin + end; left += kPartColumns) {
       const std::size_t place = place_in_tile(tile, left, top);
       const auto write = [&](const std::array<WideLanes, 3>& at, const auto& to) {
         const Floats e0 = narrow(at[0]), e1 = narrow(at[1]), e2 = narrow(at[2]);
