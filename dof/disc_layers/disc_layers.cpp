@@ -9,6 +9,7 @@
 #include "dof/disc_layers/disc_blur.h"
 #include "dof/disc_layers/disc_highlights.h"
 #include "dof/disc_layers/disc_levels.h"
+#include "dof/disc_layers/disc_slopes.h"
 #include "dof/disc_layers/lit_discs.h"
 #include "dof/level_stack.h"
 
@@ -352,6 +353,8 @@ void blur_discs(const DofInput& input, const ImageView& result, ThreadPool& pool
   const DiscHighlights highlights = find_highlights(input, ladder, pool);
   DofInput rest = input;
   if (highlights.rest.width != 0) rest.scene = highlights.rest;
+  const CentredDiscs centred = centre_discs(rest, pool);
+  rest.scene = centred.picture;
   const HiddenPicture hidden = find(rest, pool);
   const DiscLevels made = make_disc_levels(rest, hidden, ladder, pool);
   LitGains gains = make_gains(highlights, made.levels, pool.memory());

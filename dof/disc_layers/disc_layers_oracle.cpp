@@ -10,6 +10,7 @@
 #include "dof/disc_layers/disc_ladder.h"
 #include "dof/disc_layers/disc_layers.h"
 #include "dof/disc_layers/disc_levels.h"
+#include "dof/disc_layers/disc_slopes.h"
 #include "dof/disc_layers/lit_discs.h"
 #include "dof/level_oracle.h"
 #include "dof/picture_planes.h"
@@ -219,6 +220,8 @@ void blur_discs_oracle(const DofInput& input, const ImageView& result, ThreadPoo
   layers.highlights = find_highlights(input, layers.ladder, pool);
   DofInput rest = input;
   if (layers.highlights.rest.width != 0) rest.scene = layers.highlights.rest;
+  const CentredDiscs centred = centre_discs(rest, pool);
+  rest.scene = centred.picture;
   layers.levels.push_back(picture_level(rest, find(rest, pool)));
   for (std::size_t i = 1; i < layers.ladder.size(); ++i) {
     layers.levels.push_back(halve(layers.levels[i - 1], i == 1, layers.ladder[i - 1].beyond,

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "dof/disc_layers/disc_levels.h"
+#include "dof/disc_layers/disc_slopes.h"
 #include "dof/measure/point_image.h"
 #include "raster/images/texel.h"
 #include "raster/numbers/random_bits.h"
@@ -103,6 +105,74 @@ TEST_CASE("disc-layers gives its oracle's bits where there are highlights" *
         INFO(std::string{isa_name(isa)}, ", ", size.width, "x", size.height, ", ", max_coc);
         CHECK(equal(blurred(scene, of, pool), expected));
       }
+    }
+  }
+}
+
+// Light and radius both grow along x, or along y: radii of 16 (1 - 2 / z), from 4 by 1/16 a pixel.
+Image ramp_image(bool along_y) {
+  Image image = make_image(Format::rgba16f, 128, 128);
+  for (int y = 0; y < 128; ++y) {
+    for (int x = 0; x < 128; ++x) {
+      const auto at = static_cast<float>(along_y ? y : x);
+      const float light = at - 64.0f;
+      store_texel(image, x, y, {light, light, light, 2.0f / (1.0f - (4.0f + at / 16.0f) / 16.0f)},
+                  {});
+    }
+  }
+  return image;
+}
+
+TEST_CASE("disc-layers sees a slope as a lens does: its side of larger radii less") {
+  // q + v r_q = p with r_q = r_0 + g q: over a disc of v, whose mean square is 1/4 along an axis, q
+  // is p + g r_p / 4 in the mean, to the second order of g.
+  ThreadPool pool(2);
+  for (const bool along_y : {false, true}) {
+    const Image result = blurred(ramp_image(along_y), settings(16.0f, 40.0f), pool);
+    double sum = 0.0;
+    for (int at = 32; at < 96; ++at) {
+      const float light = load_texel(result, along_y ? 64 : at, along_y ? at : 64).x;
+      const double expected = at + (4.0 + at / 16.0) / 64.0;
+      CAPTURE(along_y);
+      CAPTURE(at);
+      const double off = light + 64.0 - expected;
+      CHECK(std::fabs(off) < 0.1);
+      sum += off;
+    }
+    // Of discs about the pixels themselves it is 0.12.
+    CHECK(std::fabs(sum / 64.0) < 0.05);
+  }
+}
+
+TEST_CASE("discs are centred on slopes alone, and every vector unit gives the scalar form's bits") {
+  const auto centred = [](const Image& scene, const DofSettings& of, Isa isa) {
+    ThreadPool pool(2, isa);
+    return copy_of(centre_discs({scene, of, {}}, pool).picture, pool);
+  };
+  const Image outline = edge_image(4.0f, 2.5f);
+  CHECK(equal(centred(outline, settings(8.0f, 40.0f), Isa::scalar), outline));
+  const Image ramp = ramp_image(false);
+  CHECK(equal(centred(ramp, settings(0.5f, 40.0f), Isa::scalar), ramp));
+  CHECK(!equal(centred(ramp, settings(16.0f, 40.0f), Isa::scalar), ramp));
+  for (const int width : {1, 15, 70}) {
+    Image scene = make_image(Format::rgba16f, width, 40);
+    RandomSequence random{static_cast<std::uint64_t>(width)};
+    for (int y = 0; y < 40; ++y) {
+      for (int x = 0; x < width; ++x) {
+        // A rough slope, some of whose pixels are no numbers.
+        const auto light = static_cast<float>(next_between(random, -1.0, 3.0));
+        const auto rough = static_cast<float>(next_between(random, -0.02, 0.02));
+        const float depth_m =
+            y == 20 ? light / 0.0f
+                    : 3.0f + 0.05f * static_cast<float>(x) - 0.04f * static_cast<float>(y) + rough;
+        store_texel(scene, x, y, {x % 9 == 3 ? light / 0.0f : light, light, -light, depth_m}, {});
+      }
+    }
+    const DofSettings of = settings(40.0f, 60.0f);
+    const Image expected = centred(scene, of, Isa::scalar);
+    for (const Isa isa : available_isas()) {
+      INFO(std::string{isa_name(isa)}, ", ", width);
+      CHECK(equal(centred(scene, of, isa), expected));
     }
   }
 }

@@ -1,0 +1,211 @@
+#ifndef SOFTFOCUS_ISA
+// The kernels, below #else, are compiled once for each vector unit (for_each_isa.inl).
+
+#include "dof/disc_layers/disc_slopes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+#include "dof/picture_planes.h"
+#include "raster/numbers/half.h"
+#include "raster/threads/loops.h"
+
+namespace softfocus {
+namespace {
+
+constexpr float kLeastRadius = 1.0f, kOutline = 0.5f, kLeastShift = 1.0f / 64.0f, kMostShift = 0.5f;
+
+/// A row's texels and radii, and those above and below it; the picture's first and last rows
+/// repeat, and a radius more at either end.
+struct SlopeRows {
+  const std::uint16_t* texels[3];
+  const float* radii[3];
+  int width;
+};
+
+}  // namespace
+}  // namespace softfocus
+
+#define SOFTFOCUS_KERNELS "dof/disc_layers/disc_slopes.cpp"
+#include "raster/lanes/for_each_isa.inl"
+
+namespace softfocus {
+namespace {
+
+float shift_along(float before, float own, float after) {
+  const float first = own - before, second = after - own;
+  if (!(std::fabs(first) < kOutline && std::fabs(second) < kOutline)) return 0.0f;
+  const float slope = std::fabs(first) < std::fabs(second) ? first : second;
+  const float shift = 0.25f * (own * slope);
+  return std::fabs(shift) < kLeastShift ? 0.0f : std::clamp(shift, -kMostShift, kMostShift);
+}
+
+void centre_row_scalar(const DofInput& input, int y, std::uint16_t* to) {
+  const int right = input.scene.width - 1, bottom = input.scene.height - 1;
+  const auto at = [&](int x, int row) {
+    return split_texel(input, std::clamp(x, 0, right), std::clamp(row, 0, bottom));
+  };
+  const std::uint16_t* from = row<std::uint16_t>(input.scene, y).data();
+  for (int x = 0; x <= right; ++x) {
+    std::uint16_t* texel = to + 4 * x;
+    std::copy_n(from + 4 * x, 4, texel);
+    const float radius = at(x, y).radius_px;
+    if (!(std::fabs(radius) > kLeastRadius)) continue;
+    const float shift_x = shift_along(at(x - 1, y).radius_px, radius, at(x + 1, y).radius_px);
+    const float shift_y = shift_along(at(x, y - 1).radius_px, radius, at(x, y + 1).radius_px);
+    if (shift_x == 0.0f && shift_y == 0.0f) continue;
+    const SplitTexel own = at(x, y);
+    const SplitTexel across = at(shift_x > 0.0f ? x - 1 : x + 1, y);
+    const SplitTexel down = at(x, shift_y > 0.0f ? y - 1 : y + 1);
+    const auto channel = [&](float SplitTexel::*c) {
+      return float_to_half(own.*c + std::fabs(shift_x) * (across.*c - own.*c) +
+                               std::fabs(shift_y) * (down.*c - own.*c),
+                           HalfRounding::nearest_even);
+    };
+    texel[0] = channel(&SplitTexel::r);
+    texel[1] = channel(&SplitTexel::g);
+    texel[2] = channel(&SplitTexel::b);
+  }
+}
+
+// Rows `begin` to `end` - 1. Each row's radii are found once.
+void centre_rows(const DofInput& input, int begin, int end, const ImageView& moved, Isa isa) {
+  const ConstImageView& scene = input.scene;
+  const auto inside = [&](int y) { return std::clamp(y, 0, scene.height - 1); };
+  const auto texels = [&](int y) { return row<std::uint16_t>(scene, inside(y)).data(); };
+  const std::size_t room = static_cast<std::size_t>(scene.width) + 2 * kMostLanes;
+  std::vector<float> radii(3 * room);
+  const auto radii_of = [&](int y) {
+    return radii.data() + static_cast<std::size_t>((inside(y) + 3) % 3) * room + kMostLanes;
+  };
+  const auto find_radii = [&](int y) {
+    float* to = radii_of(y);
+    SOFTFOCUS_KERNEL(isa, find_radii)(input.settings, texels(y), scene.width, to);
+    to[-1] = to[0];
+    to[scene.width] = to[scene.width - 1];
+  };
+  find_radii(begin - 1);
+  find_radii(begin);
+  for (int y = begin; y < end; ++y) {
+    find_radii(y + 1);
+    SOFTFOCUS_KERNEL(isa, centre_row)
+    ({{texels(y - 1), texels(y), texels(y + 1)},
+      {radii_of(y - 1), radii_of(y), radii_of(y + 1)},
+      scene.width},
+     row<std::uint16_t>(moved, y).data());
+  }
+}
+
+}  // namespace
+
+CentredDiscs centre_discs(const DofInput& input, ThreadPool& pool) {
+  const ConstImageView& scene = input.scene;
+  const std::size_t stride =
+      bytes_per_texel(Format::rgba16f) * static_cast<std::size_t>(scene.width);
+  CentredDiscs centred{
+      {},
+      make_row_memory<std::byte>(stride * static_cast<std::size_t>(scene.height), &pool.memory())};
+  const ImageView moved{Format::rgba16f, scene.width, scene.height,
+                        static_cast<std::ptrdiff_t>(stride), centred.memory.get()};
+  centred.picture = moved;
+  constexpr int kRows = 16;
+  pool.for_each((scene.height + kRows - 1) / kRows, [&](int task) {
+    const int begin = kRows * task, end = std::min(begin + kRows, scene.height);
+    if (pool.isa() != Isa::scalar) return centre_rows(input, begin, end, moved, pool.isa());
+    for (int y = begin; y < end; ++y) {
+      centre_row_scalar(input, y, row<std::uint16_t>(moved, y).data());
+    }
+  });
+  return centred;
+}
+
+}  // namespace softfocus
+
+#else  // kernels
+
+namespace {
+
+#include "dof/picture_lanes.inl"
+
+SOFTFOCUS_INLINE Floats shift_along(Floats before, Floats own, Floats after) {
+  const Floats first = own - before, second = after - own;
+  const Mask is_slope = (absolute(first) < kOutline) & (absolute(second) < kOutline);
+  const Floats slope = select(absolute(first) < absolute(second), first, second);
+  const Floats shift = 0.25f * (own * slope);
+  const Mask is_moved = is_slope & (absolute(shift) >= kLeastShift);
+  return select(is_moved, larger(smaller(shift, splat(kMostShift)), splat(-kMostShift)),
+                splat(0.0f));
+}
+
+using SlopeColours = std::array<Floats, 3>;
+
+SOFTFOCUS_INLINE SlopeColours load_finite(const std::uint16_t* texels, int x, int width) {
+  const HalfTexels loaded = load_repeating(texels, x, width);
+  return {finite_colour(loaded.r), finite_colour(loaded.g), finite_colour(loaded.b)};
+}
+
+// Adds what lanes see of the pixels on one side: `first` where their shift is positive.
+template <class First, class Second>
+SOFTFOCUS_INLINE void add_beside(const SlopeColours& own, Floats shift, Mask moved,
+                                 const First& first, const Second& second, SlopeColours& sum) {
+  const Mask to_first = moved & (shift > 0.0f), to_second = moved & (shift < 0.0f);
+  const Floats share = absolute(shift);
+  const auto add = [&](Mask lanes, const SlopeColours& beside) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      sum[c] = select(lanes, sum[c] + share * (beside[c] - own[c]), sum[c]);
+    }
+  };
+  if (any(to_first)) add(to_first, first());
+  if (any(to_second)) add(to_second, second());
+}
+
+}  // namespace
+
+void find_radii(const DofSettings& settings, const std::uint16_t* texels, int width, float* to) {
+  for (int x = 0; x < width; x += kLanes) {
+    store(to + x, split_radius(settings, half_to_float(load_repeating(texels, x, width).a)));
+  }
+}
+
+void centre_row(const SlopeRows& rows, std::uint16_t* to) {
+  const int width = rows.width;
+  for (int x = 0; x < width; x += kLanes) {
+    const float* radii = rows.radii[1] + x;
+    const Floats radius = load(radii);
+    const Floats shift_x = shift_along(load(radii - 1), radius, load(radii + 1));
+    const Floats shift_y = shift_along(load(rows.radii[0] + x), radius, load(rows.radii[2] + x));
+    const Mask is_moved =
+        (absolute(radius) > kLeastRadius) & ~((shift_x == 0.0f) & (shift_y == 0.0f));
+    if (!any(is_moved)) {
+      std::memcpy(to + 4 * x, rows.texels[1] + 4 * x,
+                  4 * sizeof *to * static_cast<std::size_t>(std::min(kLanes, width - x)));
+      continue;
+    }
+    const HalfTexels own = load_repeating(rows.texels[1], x, width);
+    const SlopeColours colours{finite_colour(own.r), finite_colour(own.g), finite_colour(own.b)};
+    const auto beside = [&](int row, int at) { return load_finite(rows.texels[row], at, width); };
+    SlopeColours sum = colours;
+    add_beside(
+        colours, shift_x, is_moved, [&] { return beside(1, x - 1); },
+        [&] { return beside(1, x + 1); }, sum);
+    add_beside(
+        colours, shift_y, is_moved, [&] { return beside(0, x); }, [&] { return beside(2, x); },
+        sum);
+    const auto stored = [&](std::size_t c, Bits unmoved) {
+      return select(is_moved, float_to_half<HalfRounding::nearest_even>(sum[c]), unmoved);
+    };
+    const HalfTexels moved{stored(0, own.r), stored(1, own.g), stored(2, own.b), own.a};
+    if (x + kLanes <= width) {
+      store_half_texels(to + 4 * x, moved);
+    } else {
+      std::uint16_t last[4 * kLanes];
+      store_half_texels(last, moved);
+      std::memcpy(to + 4 * x, last, 4 * sizeof *last * static_cast<std::size_t>(width - x));
+    }
+  }
+}
+
+#endif
