@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "dof/disc_layers/disc_levels.h"
+#include "dof/disc_layers/disc_slopes.h"
 #include "dof/level_stack.h"
 #include "dof/object_layers/hidden_parts.h"
 #include "dof/object_layers/object_rungs.h"
@@ -195,7 +196,10 @@ Levels make_levels(int width, int height, std::size_t count, MemoryShelf& shelf)
 }  // namespace
 
 void object_layers(const DofInput& input, const ImageView& result, ThreadPool& pool) {
-  const Surfaces surfaces = find_surfaces(input, pool);
+  const CentredDiscs centred = centre_discs(input, pool);
+  DofInput of_centred = input;
+  of_centred.scene = centred.picture;
+  const Surfaces surfaces = find_surfaces(of_centred, pool);
   const LayerMarks marks = mark_layers(surfaces, pool);
   const ObjectLadder ladder = make_object_ladder(input.settings.max_coc_px);
   const Levels made = make_levels(result.width, result.height, ladder.levels.size(), pool.memory());

@@ -27,10 +27,10 @@
 // the layers that an object straddles the entire object. That takes the object for one of a single
 // blur, and a floor from here to the horizon is none.
 //
-// Layers are the rungs of disc_ladder.h, levels included: a layer from a radius of 8 pixels on is
-// blurred in pixels 2, 4, ... across. The paper's are uniform in dioptres, that is in radius, with
-// steps that an eye does not tell apart; these become coarser with the radius, for a disc of 60
-// pixels looks like one of 63.
+// Colours are those of disc_slopes.h. Layers are the rungs of disc_ladder.h, levels included: a
+// layer from a radius of 8 pixels on is blurred in pixels 2, 4, ... across. The paper's are uniform
+// in dioptres, that is in radius, with steps that an eye does not tell apart; these become coarser
+// with the radius, for a disc of 60 pixels looks like one of 63.
 //
 // Known failures:
 // - What is hidden is drawn out from the borders of what is visible: texture becomes streaks along

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include "dof/disc_layers/disc_slopes.h"
 #include "dof/level_oracle.h"
 #include "dof/object_layers/hidden_parts.h"
 #include "dof/object_layers/object_layers.h"
@@ -136,7 +137,10 @@ struct Layers {
 }  // namespace
 
 void object_layers_oracle(const DofInput& input, const ImageView& result, ThreadPool& pool) {
-  Layers layers{find_surfaces(input, pool), make_object_ladder(input.settings.max_coc_px), {}};
+  const CentredDiscs centred = centre_discs(input, pool);
+  DofInput of_centred = input;
+  of_centred.scene = centred.picture;
+  Layers layers{find_surfaces(of_centred, pool), make_object_ladder(input.settings.max_coc_px), {}};
   int width = result.width, height = result.height;
   for (std::size_t i = 0; i < layers.ladder.levels.size(); ++i) {
     layers.levels.push_back({width, height, {}});
