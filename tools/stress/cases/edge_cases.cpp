@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
+#include "dof/unmix_edges.h"
 #include "tools/stress/cases/stress_case.h"
 #include "tools/stress/cases/stress_measures.h"
 
@@ -228,6 +230,21 @@ StressTrial make_smooth_edge(double radius, int size, ThreadPool& pool) {
   return single(std::move(frame));
 }
 
+/// The same as a renderer draws it, and as it is un-mixed: colours are means over a pixel, depths
+/// those of its centre.
+StressTrial make_render_edge(double radius, int size, ThreadPool& pool) {
+  StressTrial trial = make_smooth_edge(radius, size, pool);
+  StressFrame& frame = trial.frames[0];
+  const Image depths = std::move(frame.sharp);
+  frame.sharp = grey_picture_of(
+      size, [&](int x, int y) { return kDark + kContrast * left_of_line(size, x, y); },
+      [&](int x, int y) { return load_texel(depths, x, y).w; });
+  UnmixedEdges edges = unmix_edges(frame.sharp, frame.settings, {}, pool);
+  frame.edges = {edges.pixels == 0 ? 1 : kEdgeSamples, std::move(edges.other),
+                 std::move(edges.coverage)};
+  return trial;
+}
+
 /// Of the pixels that the line crosses.
 double stairs(const StressAnswer& answer) {
   const int size = answer.truth[0].width;
@@ -329,6 +346,10 @@ constexpr std::array kEdgeCases{
                "A pixel on the outline has the light of both sides, each by its part.", kEdgeRadius,
                "RMS error on the outline", "of the contrast", 0.1, "stairs have .29", kEdgeRadii, 8,
                0, make_smooth_edge, stairs},
+    StressCase{"render-edge", "A renderer's picture of the same, its edges un-mixed",
+               "A pixel on the outline keeps its light.", kEdgeRadius, "RMS error on the outline",
+               "of the contrast", 0.1, "stairs have .29", kEdgeRadii, 8, 0, make_render_edge,
+               stairs},
     StressCase{"strand",
                "A blurred strand, half a pixel wide, before a sharp wall, 4 samples a pixel",
                "The strand has its light all along.", kEdgeRadius,
