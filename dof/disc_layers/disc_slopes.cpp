@@ -17,12 +17,14 @@ namespace softfocus {
 namespace {
 
 constexpr float kLeastRadius = 1.0f, kOutline = 0.5f, kLeastShift = 1.0f / 64.0f, kMostShift = 0.5f;
+constexpr int kBaseline = 4;  // of slopes, in pixels to either side
 
-/// A row's texels and radii, and those above and below it; the picture's first and last rows
-/// repeat, and a radius more at either end.
+/// A row's texels, and those above and below it; its radii, and those of rows around it, from
+/// kBaseline above to kBaseline below. The picture's first and last rows repeat, and kBaseline
+/// radii more at either end.
 struct SlopeRows {
   const std::uint16_t* texels[3];
-  const float* radii[3];
+  const float* radii[2 * kBaseline + 1];
   int width;
 };
 
@@ -35,12 +37,19 @@ struct SlopeRows {
 namespace softfocus {
 namespace {
 
-float shift_along(float before, float own, float after) {
-  const float first = own - before, second = after - own;
-  if (!(std::fabs(first) < kOutline && std::fabs(second) < kOutline)) return 0.0f;
-  const float slope = std::fabs(first) < std::fabs(second) ? first : second;
+/// Radii along an axis: kBaseline before, one before, at the pixel, one behind, kBaseline behind.
+float shift_along(const float (&radii)[5]) {
+  const float own = radii[2];
+  const float first = (own - radii[0]) / kBaseline, second = (radii[4] - own) / kBaseline;
+  const bool is_first = std::fabs(first) < kOutline, is_second = std::fabs(second) < kOutline;
+  const float lesser = !(first * second > 0.0f)               ? 0.0f
+                       : std::fabs(first) < std::fabs(second) ? first
+                                                              : second;
+  const float slope = is_first && is_second ? lesser : is_first ? first : is_second ? second : 0.0f;
   const float shift = 0.25f * (own * slope);
-  return std::fabs(shift) < kLeastShift ? 0.0f : std::clamp(shift, -kMostShift, kMostShift);
+  const float beside = shift > 0.0f ? radii[1] : radii[3];
+  if (!(std::fabs(shift) >= kLeastShift && std::fabs(beside - own) < kOutline)) return 0.0f;
+  return std::clamp(shift, -kMostShift, kMostShift);
 }
 
 void centre_row_scalar(const DofInput& input, int y, std::uint16_t* to) {
@@ -54,8 +63,14 @@ void centre_row_scalar(const DofInput& input, int y, std::uint16_t* to) {
     std::copy_n(from + 4 * x, 4, texel);
     const float radius = at(x, y).radius_px;
     if (!(std::fabs(radius) > kLeastRadius)) continue;
-    const float shift_x = shift_along(at(x - 1, y).radius_px, radius, at(x + 1, y).radius_px);
-    const float shift_y = shift_along(at(x, y - 1).radius_px, radius, at(x, y + 1).radius_px);
+    const auto shift = [&](int along_x, int along_y) {
+      const auto radius_at = [&](int steps) {
+        return at(x + steps * along_x, y + steps * along_y).radius_px;
+      };
+      return shift_along(
+          {radius_at(-kBaseline), radius_at(-1), radius, radius_at(1), radius_at(kBaseline)});
+    };
+    const float shift_x = shift(1, 0), shift_y = shift(0, 1);
     if (shift_x == 0.0f && shift_y == 0.0f) continue;
     const SplitTexel own = at(x, y);
     const SplitTexel across = at(shift_x > 0.0f ? x - 1 : x + 1, y);
@@ -71,31 +86,30 @@ void centre_row_scalar(const DofInput& input, int y, std::uint16_t* to) {
   }
 }
 
-// Rows `begin` to `end` - 1. Each row's radii are found once.
+// Rows `begin` to `end` - 1.
 void centre_rows(const DofInput& input, int begin, int end, const ImageView& moved, Isa isa) {
   const ConstImageView& scene = input.scene;
   const auto inside = [&](int y) { return std::clamp(y, 0, scene.height - 1); };
   const auto texels = [&](int y) { return row<std::uint16_t>(scene, inside(y)).data(); };
-  const std::size_t room = static_cast<std::size_t>(scene.width) + 2 * kMostLanes;
-  std::vector<float> radii(3 * room);
+  constexpr int kRows = 2 * kBaseline + 1;
+  const std::size_t room = static_cast<std::size_t>(scene.width) + 3 * kMostLanes;
+  static_assert(kBaseline <= kMostLanes);
+  std::vector<float> radii(kRows * room);
   const auto radii_of = [&](int y) {
-    return radii.data() + static_cast<std::size_t>((inside(y) + 3) % 3) * room + kMostLanes;
+    return radii.data() + static_cast<std::size_t>(inside(y) % kRows) * room + kMostLanes;
   };
   const auto find_radii = [&](int y) {
     float* to = radii_of(y);
     SOFTFOCUS_KERNEL(isa, find_radii)(input.settings, texels(y), scene.width, to);
-    to[-1] = to[0];
-    to[scene.width] = to[scene.width - 1];
+    std::fill_n(to - kBaseline, kBaseline, to[0]);
+    std::fill_n(to + scene.width, kBaseline, to[scene.width - 1]);
   };
-  find_radii(begin - 1);
-  find_radii(begin);
+  for (int y = begin - kBaseline; y < begin + kBaseline; ++y) find_radii(y);
   for (int y = begin; y < end; ++y) {
-    find_radii(y + 1);
-    SOFTFOCUS_KERNEL(isa, centre_row)
-    ({{texels(y - 1), texels(y), texels(y + 1)},
-      {radii_of(y - 1), radii_of(y), radii_of(y + 1)},
-      scene.width},
-     row<std::uint16_t>(moved, y).data());
+    find_radii(y + kBaseline);
+    SlopeRows rows{{texels(y - 1), texels(y), texels(y + 1)}, {}, scene.width};
+    for (int i = 0; i < kRows; ++i) rows.radii[i] = radii_of(y - kBaseline + i);
+    SOFTFOCUS_KERNEL(isa, centre_row)(rows, row<std::uint16_t>(moved, y).data());
   }
 }
 
@@ -130,14 +144,19 @@ namespace {
 
 #include "dof/picture_lanes.inl"
 
-SOFTFOCUS_INLINE Floats shift_along(Floats before, Floats own, Floats after) {
-  const Floats first = own - before, second = after - own;
-  const Mask is_slope = (absolute(first) < kOutline) & (absolute(second) < kOutline);
-  const Floats slope = select(absolute(first) < absolute(second), first, second);
+SOFTFOCUS_INLINE Floats shift_along(Floats long_before, Floats before, Floats own, Floats behind,
+                                    Floats long_behind) {
+  const Floats first = (own - long_before) / kBaseline, second = (long_behind - own) / kBaseline;
+  const Mask is_first = absolute(first) < kOutline, is_second = absolute(second) < kOutline;
+  const Floats none = splat(0.0f);
+  const Floats lesser = select(first * second > 0.0f,
+                               select(absolute(first) < absolute(second), first, second), none);
+  const Floats slope =
+      select(is_first, select(is_second, lesser, first), select(is_second, second, none));
   const Floats shift = 0.25f * (own * slope);
-  const Mask is_moved = is_slope & (absolute(shift) >= kLeastShift);
-  return select(is_moved, larger(smaller(shift, splat(kMostShift)), splat(-kMostShift)),
-                splat(0.0f));
+  const Floats beside = select(shift > 0.0f, before, behind);
+  const Mask is_moved = (absolute(shift) >= kLeastShift) & (absolute(beside - own) < kOutline);
+  return select(is_moved, larger(smaller(shift, splat(kMostShift)), splat(-kMostShift)), none);
 }
 
 using SlopeColours = std::array<Floats, 3>;
@@ -173,10 +192,13 @@ void find_radii(const DofSettings& settings, const std::uint16_t* texels, int wi
 void centre_row(const SlopeRows& rows, std::uint16_t* to) {
   const int width = rows.width;
   for (int x = 0; x < width; x += kLanes) {
-    const float* radii = rows.radii[1] + x;
+    const float* radii = rows.radii[kBaseline] + x;
     const Floats radius = load(radii);
-    const Floats shift_x = shift_along(load(radii - 1), radius, load(radii + 1));
-    const Floats shift_y = shift_along(load(rows.radii[0] + x), radius, load(rows.radii[2] + x));
+    const auto row_at = [&](int steps) { return load(rows.radii[kBaseline + steps] + x); };
+    const Floats shift_x = shift_along(load(radii - kBaseline), load(radii - 1), radius,
+                                       load(radii + 1), load(radii + kBaseline));
+    const Floats shift_y =
+        shift_along(row_at(-kBaseline), row_at(-1), radius, row_at(1), row_at(kBaseline));
     const Mask is_moved =
         (absolute(radius) > kLeastRadius) & ~((shift_x == 0.0f) & (shift_y == 0.0f));
     if (!any(is_moved)) {

@@ -7,11 +7,16 @@
 // larger radii. As seen from q, the disc of weights 1 - v g has its centre of mass at r g / 4 from
 // its own. There, by s, the even disc is centred:
 //
-//   s = r g / 4 along each axis, at most 1/2;  g the lesser of the differences to both neighbours
-//   s = 0 if it is below 1/64, |r| <= 1, or a difference is 1/2 or more, as at outlines
-//   colour at p = c_p + |s_x| (c_x - c_p) + |s_y| (c_y - c_p),  c_x, c_y the neighbours at p - s
+//   s = r g / 4 along each axis, at most 1/2
+//   g = the slope to the pixel four before, or to that four behind: the lesser of both, 0 if they
+//       have not one sign; a slope of 1/2 or more is an outline's and does not count
+//   s = 0 if it is below 1/64, |r| <= 1, or r differs by 1/2 or more from that at p -+ 1, where
+//       p - s lies
+//   colour at p = c_p + |s_x| (c_x - c_p) + |s_y| (c_y - c_p),  c_x, c_y the neighbours there
 //
-// A pixel keeps its depth.
+// A pixel keeps its depth. Its light is counted 1 + the change of s from it to the next: over four
+// pixels slopes change so little, and halves are rounded so little, that it is within a few per
+// cent, an eighth on a sharp ridge.
 
 #include "dof/dof.h"
 #include "raster/images/image.h"

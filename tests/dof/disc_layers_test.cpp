@@ -144,6 +144,38 @@ TEST_CASE("disc-layers sees a slope as a lens does: its side of larger radii les
   }
 }
 
+TEST_CASE("centring discs leaves light as it is: on planes, ridges and valleys") {
+  ThreadPool pool(2);
+  constexpr int kSide = 128, kMiddle = 64;
+  // The light of a bright column at `column`, over what it was.
+  const auto kept_light = [&](const auto& radius_at, int column) {
+    Image scene = make_image(Format::rgba16f, kSide, kSide);
+    for (int y = 0; y < kSide; ++y) {
+      for (int x = 0; x < kSide; ++x) {
+        const float light = x == column ? 0.9f : 0.2f;
+        const auto depth_m = static_cast<float>(2.0 / (1.0 - radius_at(x) / 60.0));
+        store_texel(scene, x, y, {light, light, light, depth_m}, {});
+      }
+    }
+    const Image result = blurred(scene, settings(60.0f, 60.0f), pool);
+    double got = 0.0;
+    for (int x = 0; x < kSide; ++x) {
+      got += static_cast<double>(load_texel(result, x, kMiddle).x) - 0.2;
+    }
+    return got / 0.7;
+  };
+  for (const double slope : {-0.1, -0.05, 0.05, 0.1}) {
+    CAPTURE(slope);
+    const auto bent = [&](int x) { return 20.0 + slope * std::abs(x - kMiddle); };
+    CHECK(std::fabs(kept_light(bent, kMiddle) - 1.0) < 0.2);
+    for (const int column : {60, 61, 62, 63, 64, 65}) {  // depths are rounded to halves
+      CAPTURE(column);
+      const auto flat = [&](int x) { return 20.0 + slope * (x - kMiddle); };
+      CHECK(std::fabs(kept_light(flat, column) - 1.0) < 0.1);
+    }
+  }
+}
+
 TEST_CASE("discs are centred on slopes alone, and every vector unit gives the scalar form's bits") {
   const auto centred = [](const Image& scene, const DofSettings& of, Isa isa) {
     ThreadPool pool(2, isa);
@@ -154,18 +186,24 @@ TEST_CASE("discs are centred on slopes alone, and every vector unit gives the sc
   const Image ramp = ramp_image(false);
   CHECK(equal(centred(ramp, settings(0.5f, 40.0f), Isa::scalar), ramp));
   CHECK(!equal(centred(ramp, settings(16.0f, 40.0f), Isa::scalar), ramp));
-  for (const int width : {1, 15, 70}) {
-    Image scene = make_image(Format::rgba16f, width, 40);
+  struct Size {
+    int width, height;
+  };
+  for (const auto [width, height] : {Size{1, 1}, {15, 2}, {16, 17}, {70, 40}}) {
+    Image scene = make_image(Format::rgba16f, width, height);
     RandomSequence random{static_cast<std::uint64_t>(width)};
-    for (int y = 0; y < 40; ++y) {
+    for (int y = 0; y < height; ++y) {
       for (int x = 0; x < width; ++x) {
-        // A rough slope, some of whose pixels are no numbers.
+        // A rough slope, some of whose pixels are infinite or no numbers.
         const auto light = static_cast<float>(next_between(random, -1.0, 3.0));
+        const float odd = x % 2 == 0 ? light / 0.0f : std::nanf("");
         const auto rough = static_cast<float>(next_between(random, -0.02, 0.02));
         const float depth_m =
             y == 20 ? light / 0.0f
                     : 3.0f + 0.05f * static_cast<float>(x) - 0.04f * static_cast<float>(y) + rough;
-        store_texel(scene, x, y, {x % 9 == 3 ? light / 0.0f : light, light, -light, depth_m}, {});
+        store_texel(scene, x, y,
+                    {x % 9 == 3 ? odd : light, x % 11 == 5 ? 65504.0f : light, -light, depth_m},
+                    {});
       }
     }
     const DofSettings of = settings(40.0f, 60.0f);
