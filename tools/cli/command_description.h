@@ -46,6 +46,10 @@ std::string usage_of(const CommandDescription& command);
 /// The text of --help, no line longer than `columns`, if that is 40 or more.
 std::string help_text(const CommandDescription& command, int columns);
 
+/// Appends the words of `text` from column `at` on, in lines that begin at column `indent`.
+void append_wrapped(std::string& to, std::size_t at, std::string_view text, std::size_t indent,
+                    std::size_t columns);
+
 /// The command's page for man, in the macros of man(7). `version` is the program's.
 std::string man_page(const CommandDescription& command, const std::string& version);
 

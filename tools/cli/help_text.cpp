@@ -12,7 +12,22 @@ constexpr std::size_t kNarrowest = 40;
 // Names stand left of this column, what they mean right of it; on a narrow terminal below them.
 constexpr std::size_t kMeaningColumn = 26, kNarrowMeaningColumn = 6, kNarrow = 60;
 
-/// Appends the words of `text` from column `at` on, in lines that begin at column `indent`.
+/// "  NAME      what it means".
+void append_row(std::string& to, const std::string& name, const std::string& meaning,
+                std::size_t columns) {
+  const std::size_t column = columns < kNarrow ? kNarrowMeaningColumn : kMeaningColumn;
+  to += "  " + name;
+  std::size_t at = 2 + name.size();
+  if (at + 2 > column) {
+    to += '\n';
+    at = 0;
+  }
+  to += std::string(column - at, ' ');
+  append_wrapped(to, column, meaning, column, columns);
+}
+
+}  // namespace
+
 void append_wrapped(std::string& to, std::size_t at, std::string_view text, std::size_t indent,
                     std::size_t columns) {
   bool begins_line = true;
@@ -32,22 +47,6 @@ void append_wrapped(std::string& to, std::size_t at, std::string_view text, std:
   }
   to += '\n';
 }
-
-/// "  NAME      what it means".
-void append_row(std::string& to, const std::string& name, const std::string& meaning,
-                std::size_t columns) {
-  const std::size_t column = columns < kNarrow ? kNarrowMeaningColumn : kMeaningColumn;
-  to += "  " + name;
-  std::size_t at = 2 + name.size();
-  if (at + 2 > column) {
-    to += '\n';
-    at = 0;
-  }
-  to += std::string(column - at, ' ');
-  append_wrapped(to, column, meaning, column, columns);
-}
-
-}  // namespace
 
 std::string last_word(const std::string& name) { return name.substr(name.rfind(' ') + 1); }
 
@@ -88,7 +87,11 @@ std::string help_text(const CommandDescription& command, int columns) {
   }
   if (!command.commands.empty()) {
     text += '\n';
-    append_wrapped(text, 0, command.name + " help COMMAND tells a command's options.", 0, width);
+    append_wrapped(text, 0,
+                   command.name + " help COMMAND tells a command's options, " + command.name +
+                       " help WORD what a word such as bokeh means. The simulator, a web page with "
+                       "sliders: tools/simulator.",
+                   0, width);
   }
   return text;
 }

@@ -1,14 +1,18 @@
-// softfocus help: what --help prints. softfocus documentation: the man pages and completions, which
-// the build installs.
+// softfocus help: what --help prints, and the field's words. softfocus documentation: the man pages
+// and completions, which the build installs.
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 
+#include "dof/dof.h"
+#include "raster/effects/effect.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
 #include "tools/files/whole_file.h"
+#include "tools/info/words.h"
 
 namespace softfocus {
 namespace {
@@ -41,10 +45,30 @@ void write_documentation(const CommandDescription& program, const std::filesyste
 
 }  // namespace
 
+/// What a word means that names no command; nothing if it is not known.
+std::string meaning_of(const std::string& name, int columns) {
+  std::string text;
+  if (const Method* method = find_method(name)) {
+    const std::string places = "softfocus render --method " + name + ", docs/methods.md";
+    text += text_of({method->name, method->summary, places}, columns);
+  } else if (const Effect* effect = find_effect(name)) {
+    const std::string places = "softfocus apply --effect " + name + ", docs/effects/README.md";
+    text += text_of({effect->name, effect->summary, places}, columns);
+  }
+  for (const Word& word : find_words(name)) text += text_of(word, columns);
+  return text;
+}
+
 Command add_help_command(CLI::App& program) {
-  CLI::App* parser = add_command(program, "help", "Print the help of a command");
-  const auto command = std::make_shared<std::string>();
-  add_optional_argument(*parser, "COMMAND", "A command (default: all of them)", *command);
+  CLI::App* parser =
+      add_command(program, "help", "Print the help of a command, or what a word means");
+  const auto words = std::make_shared<std::string>();
+  add_value_list(
+      *parser, "COMMAND", "",
+      "A command, or a word such as bokeh or circle of confusion (default: all commands)",
+      [words](const std::vector<std::string>& given) {
+        for (const std::string& one : given) *words += (words->empty() ? "" : " ") + one;
+      });
   offer(*parser, "COMMAND", [&program] {
     std::vector<std::string> names;
     for (const CommandDescription& one : describe(program, "").commands) {
@@ -52,10 +76,18 @@ Command add_help_command(CLI::App& program) {
     }
     return names;
   });
-  return {parser, [&program, command] {
-            std::cout << help_text(describe(program, *command), columns_of(kStandardOutput));
-            return kDone;
-          }};
+  return {
+      parser, [&program, words] {
+        const int columns = columns_of(kStandardOutput);
+        const std::vector<CommandDescription> commands = describe(program, "").commands;
+        const bool is_command =
+            words->empty() || std::any_of(commands.begin(), commands.end(), [&](const auto& one) {
+              return last_word(one.name) == *words;
+            });
+        const std::string meaning = is_command ? "" : meaning_of(*words, columns);
+        std::cout << (meaning.empty() ? help_text(describe(program, *words), columns) : meaning);
+        return kDone;
+      }};
 }
 
 Command add_documentation_command(CLI::App& program) {

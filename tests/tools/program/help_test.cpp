@@ -1,5 +1,11 @@
+#include <algorithm>
+#include <filesystem>
+#include <sstream>
+
 #include "tests/support/cli_render.h"
+#include "tools/info/words.h"
 #include "tools/options/method_options.h"
+#include "tools/stress/cases/stress_case.h"
 
 using namespace softfocus;
 
@@ -178,4 +184,55 @@ TEST_CASE("scenes lists those of --scene-path with their titles") {
   write_file(directory.file("mine.toml"), "title = \"My own\"\n" + kCube);
   CHECK(contains(run_program({"scenes", "--scene-path", directory.path()}).out,
                  "mine           My own\n"));
+}
+
+TEST_CASE("help: words of the field say where they are, and there they are") {
+  const std::string methods = "\n" + run_program({"methods"}).out;
+  const std::string effects = "\n" + run_program({"effects"}).out;
+  for (const Word& word : words()) {
+    std::istringstream places{std::string{word.places} + ","};
+    for (std::string place; places >> std::ws && std::getline(places, place, ',');) {
+      CAPTURE(place);
+      if (place.starts_with("docs/")) {
+        CHECK(
+            std::filesystem::exists(std::filesystem::path{SOFTFOCUS_TEST_DATA} / "../.." / place));
+        continue;
+      }
+      std::istringstream rest{place};
+      std::string program, command, option, value;
+      rest >> program >> command >> option >> value;
+      CHECK(program == "softfocus");
+      const ProgramRun help = run_program({command.c_str(), "--help"});
+      CHECK(help.status == 0);
+      CHECK(contains(help.out, option));
+      if (option == "--method" && value != "") CHECK(contains(methods, "\n" + value + " "));
+      if (option == "--effect") CHECK(contains(effects, "\n" + value + " "));
+      if (option == "--cases") {
+        const auto cases = stress_cases();
+        CHECK(std::any_of(cases.begin(), cases.end(),
+                          [&](const StressCase& one) { return one.name == value; }));
+      }
+    }
+  }
+}
+
+TEST_CASE("help: a word is found by any of its names, or by a part of one") {
+  const auto helps = [](const Words& asked, const char* expected) {
+    Words arguments{"help"};
+    arguments.insert(arguments.end(), asked.begin(), asked.end());
+    const ProgramRun run = run_program(arguments);
+    CHECK(run.status == 0);
+    CHECK(contains(run.out, expected));
+  };
+  helps({"circle", "of", "confusion"}, "softfocus lens\n");
+  helps({"coc"}, "docs/lens.md\n");
+  helps({"Circles-of-Confusion"}, "docs/lens.md\n");
+  helps({"hyperfocal"}, "hyperfocal distance\n");
+  helps({"gather"}, "--method scatter\n");
+  helps({"two-pass"}, "--method two-pass\n");
+  helps({"bilateral"}, "softfocus apply --effect bilateral\n");
+  helps({"render"}, "Usage: softfocus render");
+  const ProgramRun unknown = run_program({"help", "no such thing"});
+  CHECK(unknown.status == 2);
+  CHECK(contains(unknown.err, "no such thing"));
 }
