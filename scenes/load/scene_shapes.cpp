@@ -82,6 +82,7 @@ constexpr std::array<ShapeKind, 6> kShapes = {{
 
 Mesh read_shape(Section& section) {
   std::vector<std::string_view> names;
+  names.reserve(kShapes.size() + 1);
   for (const ShapeKind& kind : kShapes) names.push_back(kind.name);
   names.push_back("model");
   if (!has_key(section, "shape")) {

@@ -16,6 +16,7 @@ double ms_since(Clock::time_point start) {
 
 std::vector<StageSamples> no_samples(const std::vector<TimedStage>& stages) {
   std::vector<StageSamples> samples;
+  samples.reserve(stages.size());
   for (const TimedStage& stage : stages) samples.push_back({stage.name, {}});
   return samples;
 }

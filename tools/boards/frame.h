@@ -49,9 +49,9 @@ constexpr int64_t half_in_q24(uint16_t half) {
 
 /// 0 to 1 as 0 to `largest`, at most 255.
 constexpr uint16_t level_of_half(uint16_t half, int largest) {
-  constexpr int64_t one = 1 << 24;
+  constexpr int64_t kOne = 1 << 24;
   const int64_t value = half_in_q24(half);
-  return static_cast<uint16_t>(((value < one ? value : one) * largest + one / 2) >> 24);
+  return static_cast<uint16_t>(((value < kOne ? value : kOne) * largest + kOne / 2) >> 24);
 }
 
 constexpr uint16_t rgb565_of_halves(const uint16_t* rgb) {

@@ -224,6 +224,7 @@ void draw_box(const ReliefBox& box, const CameraMatrices& camera, const WarpRule
         plane_mapping(face.texture, camera, *place, picture.width, picture.height);
     if (i != order[0]) mapping.behind_m = static_cast<float>(kHasTexels * texel_side(face.texture));
     map_relief(memory.warped, mapping, picture, pool);
+    if (shown == nullptr) continue;
     for (std::size_t pixel = 0; pixel < before.size(); ++pixel) {
       if (depth_at(pixel) != before[pixel]) (*shown)[pixel] = static_cast<std::uint8_t>(i);
     }

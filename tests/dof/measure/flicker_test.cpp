@@ -14,6 +14,7 @@ namespace {
 /// Stripes that move by one pixel a frame, over `offset`.
 std::vector<Image> moving_stripes(double offset) {
   std::vector<Image> frames;
+  frames.reserve(4);
   for (int t = 0; t < 4; ++t) {
     frames.push_back(
         grey_picture(12, 5, [=](int x, int) { return offset + ((x + t) % 4 < 2 ? 0.25 : 0.0); }));

@@ -16,10 +16,10 @@ using namespace softfocus;
 namespace {
 
 /// One channel in binary64.
-struct Plane {
+struct GreyPlane {
   int size;  ///< of both sides
   std::vector<double> values;
-  explicit Plane(int side) : size(side), values(static_cast<std::size_t>(side * side)) {}
+  explicit GreyPlane(int side) : size(side), values(static_cast<std::size_t>(side * side)) {}
   double& at(int x, int y) { return values[static_cast<std::size_t>(y * size + x)]; }
   double clamped(int x, int y) const {
     const int i = std::clamp(x, 0, size - 1), j = std::clamp(y, 0, size - 1);
@@ -28,8 +28,8 @@ struct Plane {
 };
 
 /// Five means of 4x4 pixels, the middle one counting half.
-Plane halved_plane(const Plane& from) {
-  Plane half{(from.size + 1) / 2};
+GreyPlane halved_plane(const GreyPlane& from) {
+  GreyPlane half{(from.size + 1) / 2};
   for (int y = 0; y < half.size; ++y) {
     for (int x = 0; x < half.size; ++x) {
       const auto mean = [&](int left, int top) {
@@ -49,8 +49,8 @@ Plane halved_plane(const Plane& from) {
 }
 
 /// A tent, 1 2 1 in each direction, of bilinear samples.
-Plane doubled_plane(const Plane& from, int size) {
-  Plane wide{size};
+GreyPlane doubled_plane(const GreyPlane& from, int size) {
+  GreyPlane wide{size};
   const auto weight = [](double distance) {
     // The tent of samples one pixel apart, convolved with the sample's own tent.
     double sum = 0.0;
@@ -74,11 +74,11 @@ Plane doubled_plane(const Plane& from, int size) {
   return wide;
 }
 
-Plane scattered_plane(const Plane& light, int levels, double spread) {
-  std::vector<Plane> planes{light};
+GreyPlane scattered_plane(const GreyPlane& light, int levels, double spread) {
+  std::vector<GreyPlane> planes{light};
   for (int i = 0; i < levels; ++i) planes.push_back(halved_plane(planes.back()));
   for (std::size_t i = planes.size() - 1; i-- > 0;) {
-    const Plane wide = doubled_plane(planes[i + 1], planes[i].size);
+    const GreyPlane wide = doubled_plane(planes[i + 1], planes[i].size);
     const double share = i == 0 ? 1.0 : spread;
     for (std::size_t k = 0; k < wide.values.size(); ++k) {
       planes[i].values[k] += share * (wide.values[k] - planes[i].values[k]);
@@ -89,14 +89,14 @@ Plane scattered_plane(const Plane& light, int levels, double spread) {
 
 /// The sum of the pyramid's kernels: what becomes of a point, in the mean of all its places among
 /// the pixels of the widest level.
-Plane sum_of_kernels(int levels, double spread) {
+GreyPlane sum_of_kernels(int levels, double spread) {
   const int period = 1 << levels, reach = 8 * period, size = 2 * reach + period;
-  Plane kernel{2 * reach + 1};
+  GreyPlane kernel{2 * reach + 1};
   for (int phase_y = 0; phase_y < period; ++phase_y) {
     for (int phase_x = 0; phase_x < period; ++phase_x) {
-      Plane point{size};
+      GreyPlane point{size};
       point.at(reach + phase_x, reach + phase_y) = 1.0;
-      const Plane seen = scattered_plane(point, levels, spread);
+      const GreyPlane seen = scattered_plane(point, levels, spread);
       for (int y = 0; y < kernel.size; ++y) {
         for (int x = 0; x < kernel.size; ++x) {
           kernel.at(x, y) += seen.clamped(x + phase_x, y + phase_y) / (period * period);
@@ -144,8 +144,9 @@ Image lamp_at(double x, double y, bool smooth) {
     for (int i = 60; i < 70; ++i) {
       double covered = 0.0;
       for (int k = 0; k < kSamples * kSamples; ++k) {
-        const double u = i + (smooth ? (k % kSamples + 0.5) / kSamples : 0.5) - x;
-        const double v = j + (smooth ? (k / kSamples + 0.5) / kSamples : 0.5) - y;
+        const int column = k % kSamples, row = k / kSamples;
+        const double u = i + (smooth ? (column + 0.5) / kSamples : 0.5) - x;
+        const double v = j + (smooth ? (row + 0.5) / kSamples : 0.5) - y;
         covered += u * u + v * v < kRadius * kRadius ? 1.0 / (kSamples * kSamples) : 0.0;
       }
       const auto light = static_cast<float>(50.0 * covered);
@@ -189,11 +190,11 @@ TEST_CASE("bloom is near a convolution with the sum of its kernels" * doctest::t
   const Image picture = lamps();
   for (const int levels : {1, 2, 3, 4}) {
     CAPTURE(levels);
-    const Plane kernel = sum_of_kernels(levels, 0.6);
+    const GreyPlane kernel = sum_of_kernels(levels, 0.6);
     double whole = 0.0;
     for (const double weight : kernel.values) whole += weight;
     CHECK(whole == doctest::Approx(1.0));
-    Plane truth{kSize};
+    GreyPlane truth{kSize};
     const int reach = kernel.size / 2;
     for (int y = 0; y < kSize; ++y) {
       for (int x = 0; x < kSize; ++x) {

@@ -31,6 +31,7 @@ int wrap_by_walking(long index, int size, Wrap wrap) {
   if (wrap == Wrap::clamp_to_edge) return static_cast<int>(std::clamp<long>(index, 0, size - 1));
   // Lay the texture, or texture and mirror image, side by side until the index is met.
   std::vector<int> pattern;
+  pattern.reserve(2 * static_cast<std::size_t>(size));
   for (int i = 0; i < size; ++i) pattern.push_back(i);
   if (wrap == Wrap::mirrored_repeat) {
     for (int i = size - 1; i >= 0; --i) pattern.push_back(i);

@@ -39,8 +39,8 @@ TEST_CASE("a flat varying is the last vertex's value, or the first's if it provo
 TEST_CASE("a clipped polygon is drawn as a fan about its first vertex, which provokes") {
   // The fan's triangles, drawn as they are, must give the same bits: planes depend on the
   // order of the vertices.
-  constexpr std::array kinds{Interpolation::perspective, Interpolation::perspective,
-                             Interpolation::perspective, Interpolation::perspective};
+  constexpr std::array kKinds{Interpolation::perspective, Interpolation::perspective,
+                              Interpolation::perspective, Interpolation::perspective};
   constexpr int kSide = 64;
   Profile clipping = profile_named("llvmpipe-sse41");
   Profile scissoring = clipping;
@@ -65,7 +65,7 @@ TEST_CASE("a clipped polygon is drawn as a fan about its first vertex, which pro
       planes |= clip_code(p, clipping.guard_band);
     }
     if (planes == 0) continue;
-    clip_polygon(polygon, planes, kinds, clipping);
+    clip_polygon(polygon, planes, kKinds, clipping);
     fans += polygon.count > 4;
     for (const auto provoking : {ProvokingVertex::last, ProvokingVertex::first}) {
       std::vector<VertexOutput<4>> fan;

@@ -166,12 +166,12 @@ TEST_CASE(
          test::ListedVertices<4>{&vertices}, test::VaryingColour<Interpolation::flat>{});
   }
   // Only a few pixels of each tile: 6,000 blends each are slow without optimisation.
-  static const ScalarSteps kWhole = *pass.draws[0].scalar_steps;
-  ScalarSteps corners = kWhole;
+  static const ScalarSteps whole = *pass.draws[0].scalar_steps;
+  ScalarSteps corners = whole;
   corners.shade_tile = [](const void* recorded, std::uint32_t chunk, std::span<const Bin> bins,
                           const Rectangle& tile) {
-    kWhole.shade_tile(recorded, chunk, bins,
-                      {tile.x_end - 2, tile.y_end - 2, tile.x_end, tile.y_end});
+    whole.shade_tile(recorded, chunk, bins,
+                     {tile.x_end - 2, tile.y_end - 2, tile.x_end, tile.y_end});
   };
   for (DrawCall& call : pass.draws) call.scalar_steps = &corners;
   ThreadPool pool{2};

@@ -106,7 +106,7 @@ Weights exact_weights(const TriangleSetup& setup, int x, int y, bool snapped) {
 template <template <std::size_t> class Interpolator>
 double error_against_weights(const Profile& profile, bool snapped, std::uint64_t seed,
                              float smallest_area) {
-  constexpr std::array kinds{kPerspective, kLinear};
+  constexpr std::array kKinds{kPerspective, kLinear};
   test::Random random{seed};
   double worst = 0.0;
   for (int t = 0; t < 400; ++t) {
@@ -115,7 +115,7 @@ double error_against_weights(const Profile& profile, bool snapped, std::uint64_t
     for (auto& v : varyings) v[0] = v[1] = random.between(-1.0f, 1.0f);
     const auto triangle = set_up<2>(seen.clip, varyings, profile);
     if (!triangle || std::fabs(unsnapped_area(triangle->setup.vertices)) < smallest_area) continue;
-    const Interpolator<2> interpolator{*triangle, profile, kinds};
+    const Interpolator<2> interpolator{*triangle, profile, kKinds};
     for_each_pixel(triangle->setup, [&](int x, int y) {
       const auto value = interpolator.at(x, y);
       const Weights weights = exact_weights(triangle->setup, x, y, snapped);
@@ -203,7 +203,7 @@ TEST_CASE("plane interpolation is near exact weights of the unsnapped triangle, 
 TEST_CASE("a plane in space comes back from its varyings: the position seen at each pixel") {
   // Position in space as three varyings, projected again, is the pixel's centre, up to
   // snapping (1/512 pixel) and rounding; and it lies on the triangle's plane.
-  constexpr std::array kinds{kPerspective, kPerspective, kPerspective};
+  constexpr std::array kKinds{kPerspective, kPerspective, kPerspective};
   test::Random random{83};
   double worst_window = 0.0;
   double worst_plane = 0.0;
@@ -219,7 +219,7 @@ TEST_CASE("a plane in space comes back from its varyings: the position seen at e
     const glm::dvec3 side_1 = glm::dvec3{seen.space[1]} - origin;
     const glm::dvec3 side_2 = glm::dvec3{seen.space[2]} - origin;
     const glm::dvec3 normal = normalize(cross(side_1, side_2));
-    const BarycentricInterpolator<3> interpolator{*triangle, Profile{}, kinds};
+    const BarycentricInterpolator<3> interpolator{*triangle, Profile{}, kKinds};
     for_each_pixel(triangle->setup, [&](int x, int y) {
       const auto v = interpolator.at(x, y).varyings;
       const glm::dvec3 p{v[0], v[1], v[2]};
@@ -274,7 +274,7 @@ TEST_CASE("a flat varying has the provoking vertex's value at every pixel, to th
 }
 
 TEST_CASE("a varying that is the same at all three vertices comes out unchanged") {
-  constexpr std::array kinds{kPerspective, kLinear, kFlat};
+  constexpr std::array kKinds{kPerspective, kLinear, kFlat};
   test::Random random{85};
   int wrong = 0;
   for (int t = 0; t < 400; ++t) {
@@ -282,7 +282,7 @@ TEST_CASE("a varying that is the same at all three vertices comes out unchanged"
     const Varyings<3> same{value, value, value};
     const auto triangle = set_up<3>(some_triangle(random).clip, {same, same, same});
     if (!triangle) continue;
-    const BarycentricInterpolator<3> interpolator{*triangle, Profile{}, kinds};
+    const BarycentricInterpolator<3> interpolator{*triangle, Profile{}, kKinds};
     for_each_pixel(triangle->setup,
                    [&](int x, int y) { wrong += interpolator.at(x, y).varyings != same; });
   }
@@ -290,7 +290,7 @@ TEST_CASE("a varying that is the same at all three vertices comes out unchanged"
 }
 
 TEST_CASE("interpolated values stay within rounding of the vertices' range on any sliver") {
-  constexpr std::array kinds{kPerspective, kLinear};
+  constexpr std::array kKinds{kPerspective, kLinear};
   test::Random random{86};
   double worst = 0.0;
   int pixels = 0;
@@ -307,7 +307,7 @@ TEST_CASE("interpolated values stay within rounding of the vertices' range on an
     }
     const auto triangle = set_up<2>(clip, {Varyings<2>{0.0f, 1.0f}, {1.0f, 0.0f}, {0.5f, 0.25f}});
     if (!triangle) continue;
-    const BarycentricInterpolator<2> interpolator{*triangle, Profile{}, kinds};
+    const BarycentricInterpolator<2> interpolator{*triangle, Profile{}, kKinds};
     for_each_pixel(triangle->setup, [&](int x, int y) {
       const auto value = interpolator.at(x, y);
       for (const float v : value.varyings) {

@@ -13,7 +13,6 @@
 #include "tests/support/raster_helpers.h"
 
 using namespace softfocus;
-using test::profile_named;
 
 namespace {
 

@@ -2,8 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 
 #include "raster/images/texel.h"
 #include "tests/support/raster_helpers.h"
@@ -35,7 +36,7 @@ bool same_bits(const SampleSums& a, const SampleSums& b) {
   for (std::size_t i = 0; i < a.totals.size(); ++i) {
     const double x = a.totals[i], y = b.totals[i];
     if (std::isnan(x) && std::isnan(y)) continue;  // whose signs differ between processors
-    if (std::memcmp(&x, &y, sizeof x) != 0) return false;
+    if (std::bit_cast<std::uint64_t>(x) != std::bit_cast<std::uint64_t>(y)) return false;
   }
   return a.totals.size() == b.totals.size();
 }

@@ -63,7 +63,8 @@ TEST_CASE("a slope's normals are its plane's, at borders and beside holes too") 
   HeightField field{8, 6, {}};
   field.heights.reserve(48);
   for (int i = 0; i < 48; ++i) {
-    field.heights.push_back(0.5f * static_cast<float>(i % 8) - 0.25f * static_cast<float>(i / 8));
+    const int column = i % 8, row = i / 8;
+    field.heights.push_back(0.5f * static_cast<float>(column) - 0.25f * static_cast<float>(row));
   }
   field.heights[20] = NAN;
   const ReliefTexture relief = *relief_of_heights(field, {1.0, 16, true});
