@@ -189,11 +189,11 @@ TEST_CASE("discs are centred on slopes alone, and every vector unit gives the sc
   struct Size {
     int width, height;
   };
-  for (const auto [width, height] : {Size{1, 1}, {15, 2}, {16, 17}, {70, 40}}) {
-    Image scene = make_image(Format::rgba16f, width, height);
-    RandomSequence random{static_cast<std::uint64_t>(width)};
-    for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) {
+  for (const Size size : {Size{1, 1}, {15, 2}, {16, 17}, {70, 40}}) {
+    Image scene = make_image(Format::rgba16f, size.width, size.height);
+    RandomSequence random{static_cast<std::uint64_t>(size.width)};
+    for (int y = 0; y < size.height; ++y) {
+      for (int x = 0; x < size.width; ++x) {
         // A rough slope, some of whose pixels are infinite or no numbers.
         const auto light = static_cast<float>(next_between(random, -1.0, 3.0));
         const float odd = x % 2 == 0 ? light / 0.0f : std::nanf("");
@@ -209,7 +209,7 @@ TEST_CASE("discs are centred on slopes alone, and every vector unit gives the sc
     const DofSettings of = settings(40.0f, 60.0f);
     const Image expected = centred(scene, of, Isa::scalar);
     for (const Isa isa : available_isas()) {
-      INFO(std::string{isa_name(isa)}, ", ", width);
+      INFO(std::string{isa_name(isa)}, ", ", size.width);
       CHECK(equal(centred(scene, of, isa), expected));
     }
   }

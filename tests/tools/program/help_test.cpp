@@ -202,10 +202,10 @@ TEST_CASE("help: words of the field say where they are, and there they are") {
       std::string program, command, option, value;
       rest >> program >> command >> option >> value;
       CHECK(program == "softfocus");
-      const ProgramRun help = run_program({command.c_str(), "--help"});
+      const ProgramRun help = run_program({command, "--help"});
       CHECK(help.status == 0);
       CHECK(contains(help.out, option));
-      if (option == "--method" && value != "") CHECK(contains(methods, "\n" + value + " "));
+      if (option == "--method" && !value.empty()) CHECK(contains(methods, "\n" + value + " "));
       if (option == "--effect") CHECK(contains(effects, "\n" + value + " "));
       if (option == "--cases") {
         const auto cases = stress_cases();
