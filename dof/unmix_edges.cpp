@@ -268,7 +268,7 @@ float blur_apart(const DofSettings& settings, float depth_m, float other_m) {
     return std::clamp(px, -settings.max_coc_px, settings.max_coc_px);
   };
   const float apart_px = std::fabs(radius(depth_m) - radius(other_m));
-  return std::clamp((apart_px - 1.0f) / 2.0f, 0.0f, 1.0f);
+  return std::clamp((apart_px - 2.0f) / 3.0f, 0.0f, 1.0f);
 }
 
 void soften(TwoSurfaces& found, const glm::vec3& colour, float part) {
