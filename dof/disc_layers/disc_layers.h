@@ -14,7 +14,7 @@
 // everything that is hidden by something nearer, so in a layer behind, the visible parts of a
 // disc stand for the whole. A surface that runs through layers is nowhere seen through, since
 // its shares add to one in any order. The picture's edges repeat outwards. On slopes c is the
-// colour beside the pixel that disc_slopes.h finds.
+// colour beside the pixel that disc_slopes.h finds; highlights and layers behind keep theirs.
 //
 // A pixel near the outline of something before the focus hides something: c' of shares m', as
 // disc_hidden.h guesses it. It counts so:
