@@ -81,7 +81,8 @@ constexpr std::array kWords{
          "circle.",
          "softfocus render --method one-pass, softfocus render --method scatter, "
          "docs/methods.md"},
-    Word{"Gaussian, box filter, dual filter, Kawase", "Blurs of one width everywhere.",
+    Word{"Gaussian, box filter, dual filter, Kawase, convolution, kernel, downsampling, sharpen",
+         "Blurs of one width everywhere, and other weighted means of neighbours.",
          "softfocus apply --effect gaussian, softfocus apply --effect dual-filter, "
          "docs/effects/kernels.md"},
     Word{"ghosting, discs, views show", "Too few views of the lens stand side by side.",
@@ -134,6 +135,9 @@ constexpr std::array kWords{
          "What moves while the shutter is open, from each pixel's velocity, or from many times.",
          "softfocus apply --effect motion-blur, softfocus render --shutter, "
          "docs/effects/motion-blur.md"},
+    Word{"near field, far field, focus field, 2.5D",
+         "What lies before the focus, behind it, and in it, as pictures of their own.",
+         "softfocus render --method layers, softfocus render --method fields, docs/methods.md"},
     Word{"normal map, bump map, height field", "Directions or heights in a texture's texels.",
          "softfocus relief make, docs/relief.md"},
     Word{"object, object identification, segmentation", "Which object each pixel shows.",
@@ -152,7 +156,7 @@ constexpr std::array kWords{
     Word{"photograph, Lightroom, portrait mode, bokeh from depth",
          "A picture and its depth get the depth of field of a lens.",
          "softfocus refocus, docs/refocus.md"},
-    Word{"post-process, full-screen pass, render target, ping-pong",
+    Word{"post-process, full-screen pass, full-screen triangle, render target, ping-pong",
          "A shader over the whole picture, from one texture to another.",
          "softfocus shaders, softfocus apply --pipeline, docs/shaders.md, docs/depth-of-field.md"},
     Word{"premultiplied alpha, transparency, glass, order-independent",
@@ -165,6 +169,8 @@ constexpr std::array kWords{
     Word{"rasterization, rasterizer, software GPU, software renderer",
          "Triangles become pixels, by the rules that GPUs have.",
          "softfocus render, softfocus bench, docs/specification.md, docs/code-guide.md"},
+    Word{"radiosity, global illumination",
+         "Left out: light comes from lights and an ambient share alone.", "docs/scene-format.md"},
     Word{"ray tracing, Embree, distribution ray tracing", "Rays through points of the lens.",
          "softfocus render --method ray-traced, docs/ground-truth.md"},
     Word{"relief mapping, parallax, texture warping",
@@ -177,7 +183,9 @@ constexpr std::array kWords{
          "softfocus refocus --sensor, softfocus lens, docs/lens.md"},
     Word{"separable filter, two passes", "A horizontal pass, then a vertical one.",
          "softfocus render --method two-pass, docs/methods.md"},
-    Word{"shadow, shadow map, shadow volume, projected shadow, soft shadow, stencil",
+    Word{"shadow, shadow map, shadow volume, projected shadow, planar shadow, soft shadow, "
+         "stencil, umbra, "
+         "penumbra, shadow acne, percentage closer filtering, cascades, terminator",
          "Where a light is hidden: projected and cut exactly, or by volumes, maps and rays.",
          "softfocus render --shadows, softfocus shadows, docs/shadows.md"},
     Word{"tilt-shift, miniature", "Left out: the plane of focus is square to the axis.",
@@ -185,6 +193,10 @@ constexpr std::array kWords{
     Word{"tone mapping, HDR, exposure, ACES",
          "A curve from light of any strength to what a screen shows.",
          "softfocus render --tone-map, docs/effects/tone-mapping.md"},
+    Word{"temporal anti-aliasing, TAA, reprojection, running average",
+         "What frames before have shown, moved to where it is now.",
+         "softfocus render --effect temporal-aa, softfocus render --effect reproject, "
+         "docs/effects/temporal-anti-aliasing.md, docs/effects/reprojection.md"},
     Word{"texture, sampler, bilinear filtering, look-up table, LUT",
          "Bilinear samples with the bits of each profile; slices of a strip are a 3D texture.",
          "softfocus apply --texture, docs/specification.md, docs/shaders.md"},
