@@ -50,7 +50,7 @@ TEST_CASE("habits: help COMMAND prints what COMMAND --help does, help alone the 
   const TemporaryDirectory directory;
   check_refused(directory, {"help", "rendr"}, 2, {"'rendr'", "did you mean 'render'?"});
   check_refused(directory, {"help", "documentation"}, 2, {"'documentation'"});
-  check_refused(directory, {"help", "render", "refocus"}, 2, {"'refocus'"});
+  check_refused(directory, {"help", "render", "refocus"}, 2, {"'render refocus'"});
 }
 
 TEST_CASE("habits: a mistyped name is answered with the one that was meant") {
