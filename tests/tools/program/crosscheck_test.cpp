@@ -150,13 +150,14 @@ TEST_CASE("crosscheck: lavapipe and its profile, which is llvmpipe's, give the s
   if (!has_driver("lavapipe")) return;
   const std::string renderer = crosscheck("lavapipe", "store/rgba8-around-every-byte").out;
   if (contains(renderer, " Mesa 22.")) return check_all_equal("lavapipe", few_cases());
-  // Later ones do not look for sides that are powers of two where textures repeat.
+  // Later ones do not look for sides that are powers of two where textures repeat, and add an
+  // offset to alpha by a pixel's place among 2x2, which zink cannot forbid.
   const ProgramRun run = crosscheck("lavapipe", "*", {"--quick", "--json"});
   std::size_t compared = 0;
   for (const auto& entry : nlohmann::json::parse(run.out)) {
     CAPTURE(entry.dump());
     const std::string name = entry["case"];
-    if (name.find("repeat") != name.npos) continue;
+    if (name.find("repeat") != name.npos || name.find("alpha-") != name.npos) continue;
     ++compared;
     CHECK(entry["differing"] == 0);
   }

@@ -206,6 +206,10 @@ bool GlContext::open(void* display) {
             ? "#version " + std::to_string(version.major * 100 + version.minor * 10) + " core\n"
             : "#version 330 core\n#define precise\n";
     has_doubles_ = version.major >= 4 || epoxy_has_gl_extension("GL_ARB_gpu_shader_fp64");
+    // llvmpipe of Mesa 25 would add an offset to alpha, by a pixel's place among 2x2.
+    if (epoxy_has_gl_extension("GL_NV_alpha_to_coverage_dither_control")) {
+      glAlphaToCoverageDitherControlNV(GL_ALPHA_TO_COVERAGE_DITHER_DISABLE_NV);
+    }
     return true;
   }
   // Whatever there is, to say what is too old.
