@@ -121,13 +121,7 @@ SOFTFOCUS_INLINE void merge_rows(const std::uint16_t* scene, const float* r, con
                             float_to_half<rounding>(clamp_to_half(load(g + x))),
                             float_to_half<rounding>(clamp_to_half(load(b + x))),
                             stored_depth(load_repeating(scene, x, width).a, rounding)};
-    if (x + kLanes <= width) {
-      store_half_texels(to + 4 * x, texels);
-    } else {
-      std::uint16_t last[4 * kLanes];
-      store_half_texels(last, texels);
-      std::memcpy(to + 4 * x, last, 4 * sizeof *last * static_cast<std::size_t>(width - x));
-    }
+    store_within(to, x, width, texels);
   }
 }
 

@@ -12,6 +12,14 @@ SOFTFOCUS_INLINE HalfTexels load_repeating(const std::uint16_t* row, int x, int 
   return load_half_texels(texels);
 }
 
+/// Stores pixels x to x + kLanes - 1 of a row, as far as the row has them.
+SOFTFOCUS_INLINE void store_within(std::uint16_t* row, int x, int width, const HalfTexels& texels) {
+  if (x + kLanes <= width) return store_half_texels(row + 4 * x, texels);
+  std::uint16_t last[4 * kLanes];
+  store_half_texels(last, texels);
+  std::memcpy(row + 4 * x, last, 4 * sizeof *last * static_cast<std::size_t>(width - x));
+}
+
 SOFTFOCUS_INLINE Floats filter_radius(const DofSettings& settings, Floats depth_m) {
   const Floats radius =
       absolute(settings.coc.radius_at_infinity_px * (depth_m - settings.coc.focus_m) / depth_m);

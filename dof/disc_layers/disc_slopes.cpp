@@ -166,19 +166,18 @@ SOFTFOCUS_INLINE SlopeColours load_finite(const std::uint16_t* texels, int x, in
   return {finite_colour(loaded.r), finite_colour(loaded.g), finite_colour(loaded.b)};
 }
 
-// Adds what lanes see of the pixels on one side: `first` where their shift is positive.
-template <class First, class Second>
-SOFTFOCUS_INLINE void add_beside(const SlopeColours& own, Floats shift, Mask moved,
-                                 const First& first, const Second& second, SlopeColours& sum) {
-  const Mask to_first = moved & (shift > 0.0f), to_second = moved & (shift < 0.0f);
-  const Floats share = absolute(shift);
-  const auto add = [&](Mask lanes, const SlopeColours& beside) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      sum[c] = select(lanes, sum[c] + share * (beside[c] - own[c]), sum[c]);
-    }
-  };
-  if (any(to_first)) add(to_first, first());
-  if (any(to_second)) add(to_second, second());
+// Adds to what lanes see of their own pixels what they see of those at x.
+SOFTFOCUS_INLINE void add_beside(const std::uint16_t* texels, int x, int width, Mask lanes,
+                                 Floats share, const SlopeColours& own, SlopeColours& sum) {
+  if (!any(lanes)) return;
+  const SlopeColours beside = load_finite(texels, x, width);
+  for (std::size_t c = 0; c < 3; ++c) {
+    sum[c] = select(lanes, sum[c] + share * (beside[c] - own[c]), sum[c]);
+  }
+}
+
+SOFTFOCUS_INLINE Bits moved_half(Mask moved, Floats colour, Bits own) {
+  return select(moved, float_to_half<HalfRounding::nearest_even>(colour), own);
 }
 
 }  // namespace
@@ -192,13 +191,14 @@ void find_radii(const DofSettings& settings, const std::uint16_t* texels, int wi
 void centre_row(const SlopeRows& rows, std::uint16_t* to) {
   const int width = rows.width;
   for (int x = 0; x < width; x += kLanes) {
-    const float* radii = rows.radii[kBaseline] + x;
+    const float* const* lines = rows.radii;
+    const float* radii = lines[kBaseline] + x;
     const Floats radius = load(radii);
-    const auto row_at = [&](int steps) { return load(rows.radii[kBaseline + steps] + x); };
     const Floats shift_x = shift_along(load(radii - kBaseline), load(radii - 1), radius,
                                        load(radii + 1), load(radii + kBaseline));
     const Floats shift_y =
-        shift_along(row_at(-kBaseline), row_at(-1), radius, row_at(1), row_at(kBaseline));
+        shift_along(load(lines[0] + x), load(lines[kBaseline - 1] + x), radius,
+                    load(lines[kBaseline + 1] + x), load(lines[2 * kBaseline] + x));
     const Mask is_moved =
         (absolute(radius) > kLeastRadius) & ~((shift_x == 0.0f) & (shift_y == 0.0f));
     if (!any(is_moved)) {
@@ -206,27 +206,18 @@ void centre_row(const SlopeRows& rows, std::uint16_t* to) {
                   4 * sizeof *to * static_cast<std::size_t>(std::min(kLanes, width - x)));
       continue;
     }
-    const HalfTexels own = load_repeating(rows.texels[1], x, width);
-    const SlopeColours colours{finite_colour(own.r), finite_colour(own.g), finite_colour(own.b)};
-    const auto beside = [&](int row, int at) { return load_finite(rows.texels[row], at, width); };
-    SlopeColours sum = colours;
-    add_beside(
-        colours, shift_x, is_moved, [&] { return beside(1, x - 1); },
-        [&] { return beside(1, x + 1); }, sum);
-    add_beside(
-        colours, shift_y, is_moved, [&] { return beside(0, x); }, [&] { return beside(2, x); },
-        sum);
-    const auto stored = [&](std::size_t c, Bits unmoved) {
-      return select(is_moved, float_to_half<HalfRounding::nearest_even>(sum[c]), unmoved);
-    };
-    const HalfTexels moved{stored(0, own.r), stored(1, own.g), stored(2, own.b), own.a};
-    if (x + kLanes <= width) {
-      store_half_texels(to + 4 * x, moved);
-    } else {
-      std::uint16_t last[4 * kLanes];
-      store_half_texels(last, moved);
-      std::memcpy(to + 4 * x, last, 4 * sizeof *last * static_cast<std::size_t>(width - x));
-    }
+    const HalfTexels texels = load_repeating(rows.texels[1], x, width);
+    const SlopeColours own{finite_colour(texels.r), finite_colour(texels.g),
+                           finite_colour(texels.b)};
+    const Floats share_x = absolute(shift_x), share_y = absolute(shift_y);
+    SlopeColours sum = own;
+    add_beside(rows.texels[1], x - 1, width, is_moved & (shift_x > 0.0f), share_x, own, sum);
+    add_beside(rows.texels[1], x + 1, width, is_moved & (shift_x < 0.0f), share_x, own, sum);
+    add_beside(rows.texels[0], x, width, is_moved & (shift_y > 0.0f), share_y, own, sum);
+    add_beside(rows.texels[2], x, width, is_moved & (shift_y < 0.0f), share_y, own, sum);
+    store_within(to, x, width,
+                 {moved_half(is_moved, sum[0], texels.r), moved_half(is_moved, sum[1], texels.g),
+                  moved_half(is_moved, sum[2], texels.b), texels.a});
   }
 }
 

@@ -417,10 +417,7 @@ void store_filtered(const Sums& sums, const std::uint16_t* from, std::uint16_t* 
   const HalfColour colour = resolve<rounding>(sums);
   const HalfTexels texels{colour.r, colour.g, colour.b,
                           stored_depth(load_repeating(from, x, width).a, rounding)};
-  if (x + kLanes <= width) return store_half_texels(to + 4 * x, texels);
-  std::uint16_t last[4 * kLanes];
-  store_half_texels(last, texels);
-  std::memcpy(to + 4 * x, last, 4 * sizeof *last * static_cast<std::size_t>(width - x));
+  store_within(to, x, width, texels);
 }
 
 template <HalfRounding rounding>

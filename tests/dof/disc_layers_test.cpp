@@ -199,7 +199,7 @@ TEST_CASE("discs are centred on slopes alone, and every vector unit gives the sc
         const float odd = x % 2 == 0 ? light / 0.0f : std::nanf("");
         const auto rough = static_cast<float>(next_between(random, -0.02, 0.02));
         const float depth_m =
-            y == 20 ? light / 0.0f
+            y == 20 ? odd
                     : 3.0f + 0.05f * static_cast<float>(x) - 0.04f * static_cast<float>(y) + rough;
         store_texel(scene, x, y,
                     {x % 9 == 3 ? odd : light, x % 11 == 5 ? 65504.0f : light, -light, depth_m},

@@ -46,6 +46,9 @@ std::string usage_of(const CommandDescription& command);
 /// The text of --help, no line longer than `columns`, if that is 40 or more.
 std::string help_text(const CommandDescription& command, int columns);
 
+/// How wide lines are on a terminal of so many columns: 40 at least.
+std::size_t text_width(int columns);
+
 /// Appends the words of `text` from column `at` on, in lines that begin at column `indent`.
 void append_wrapped(std::string& to, std::size_t at, std::string_view text, std::size_t indent,
                     std::size_t columns);

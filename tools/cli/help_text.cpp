@@ -28,6 +28,10 @@ void append_row(std::string& to, const std::string& name, const std::string& mea
 
 }  // namespace
 
+std::size_t text_width(int columns) {
+  return std::max(static_cast<std::size_t>(std::max(columns, 0)), kNarrowest);
+}
+
 void append_wrapped(std::string& to, std::size_t at, std::string_view text, std::size_t indent,
                     std::size_t columns) {
   bool begins_line = true;
@@ -66,7 +70,7 @@ std::string usage_of(const CommandDescription& command) {
 }
 
 std::string help_text(const CommandDescription& command, int columns) {
-  const std::size_t width = std::max(static_cast<std::size_t>(std::max(columns, 0)), kNarrowest);
+  const std::size_t width = text_width(columns);
   std::string text;
   append_wrapped(text, 0, command.help, 0, width);
   append_wrapped(text, 0, "Usage: " + usage_of(command), 0, width);

@@ -8,6 +8,7 @@
 
 #include "dof/dof.h"
 #include "raster/effects/effect.h"
+#include "scenes/lens_views/lens_view_method.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
@@ -43,21 +44,23 @@ void write_documentation(const CommandDescription& program, const std::filesyste
               fish_completion(program));
 }
 
-}  // namespace
-
 /// What a word means that names no command; nothing if it is not known.
 std::string meaning_of(const std::string& name, int columns) {
   std::string text;
-  if (const Method* method = find_method(name)) {
-    const std::string places = "softfocus render --method " + name + ", docs/methods.md";
-    text += text_of({method->name, method->summary, places}, columns);
-  } else if (const Effect* effect = find_effect(name)) {
-    const std::string places = "softfocus apply --effect " + name + ", docs/effects/README.md";
-    text += text_of({effect->name, effect->summary, places}, columns);
+  const auto add = [&](std::string_view meaning, const std::string& places) {
+    text += text_of({name, meaning, places}, columns);
+  };
+  const std::string as_method = "softfocus render --method " + name + ", docs/methods.md";
+  if (const Method* method = find_method(name)) add(method->summary, as_method);
+  if (const LensViewMethod* method = find_lens_view_method(name)) add(method->summary, as_method);
+  if (const Effect* effect = find_effect(name)) {
+    add(effect->summary, "softfocus apply --effect " + name + ", docs/effects/README.md");
   }
   for (const Word& word : find_words(name)) text += text_of(word, columns);
   return text;
 }
+
+}  // namespace
 
 Command add_help_command(CLI::App& program) {
   CLI::App* parser =

@@ -9,8 +9,6 @@
 namespace softfocus {
 namespace {
 
-constexpr std::size_t kNarrowest = 40;
-
 constexpr std::array kWords{
     Word{"accumulation buffer, accumulation",
          "The mean of pictures from many points of the lens: right, and slow.",
@@ -203,7 +201,7 @@ constexpr std::array kWords{
     Word{"ULP, rounding, floating point, fused multiply-add, FMA",
          "The order and rounding of each operation is written down.",
          "softfocus crosscheck, docs/exactness.md, docs/specification.md"},
-    Word{"which method, best method, quality against speed",
+    Word{"auto, which method, best method, quality against speed",
          "Error against ground truth, and time, of every method.",
          "softfocus chart, softfocus render --method auto, docs/methods.md, docs/chart.md"},
 };
@@ -251,7 +249,7 @@ std::vector<Word> find_words(std::string_view name) {
     for_each_part(word.names, [&](std::string_view one) {
       const std::string known = simple(one);
       is_same = is_same || known == wanted;
-      has_part = has_part || known.find(wanted) != std::string::npos;
+      has_part = has_part || (" " + known).find(" " + wanted) != std::string::npos;
     });
     if (is_same) same.push_back(word);
     if (has_part) partly.push_back(word);
@@ -260,7 +258,7 @@ std::vector<Word> find_words(std::string_view name) {
 }
 
 std::string text_of(const Word& word, int columns) {
-  const std::size_t width = std::max(static_cast<std::size_t>(std::max(columns, 0)), kNarrowest);
+  const std::size_t width = text_width(columns);
   std::string text;
   append_wrapped(text, 0, word.names, 0, width);
   text += "  ";

@@ -18,8 +18,8 @@ struct Word {
 
 std::span<const Word> words();
 
-/// The words with that name; if there is none, those of which a name has it as a part. Capitals,
-/// hyphens and an s at the end make no difference.
+/// The words with that name. If there is none: those with a name of several words, one of which
+/// begins so. Capitals, hyphens and a plural's s make no difference.
 std::vector<Word> find_words(std::string_view name);
 
 /// A word for a terminal of so many columns.

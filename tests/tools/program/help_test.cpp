@@ -230,9 +230,13 @@ TEST_CASE("help: a word is found by any of its names, or by a part of one") {
   helps({"hyperfocal"}, "hyperfocal distance\n");
   helps({"gather"}, "--method scatter\n");
   helps({"two-pass"}, "--method two-pass\n");
+  helps({"warped-accumulation"}, "--method warped-accumulation\n");
+  helps({"auto"}, "--method auto\n");
   helps({"bilateral"}, "softfocus apply --effect bilateral\n");
   helps({"render"}, "Usage: softfocus render");
-  const ProgramRun unknown = run_program({"help", "no such thing"});
-  CHECK(unknown.status == 2);
-  CHECK(contains(unknown.err, "no such thing"));
+  for (const char* unknown : {"no such thing", "on", "usion"}) {
+    const ProgramRun run = run_program({"help", unknown});
+    CHECK(run.status == 2);
+    CHECK(contains(run.err, "'" + std::string{unknown} + "'"));
+  }
 }
