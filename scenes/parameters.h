@@ -15,7 +15,7 @@ inline constexpr Parameter kFrame{"frame", "Frame of the animation",
     0.0, 1e9, 0.0, "", "N"};
 inline constexpr Parameter kShutter{"shutter",
     "Of accumulation: how long the shutter is open, half of it before the frame's time",
-    0.0, 64.0, Camera{}.shutter_frames, "frames", "FRAMES"};
+    0.0, 64.0, 0.0, "frames", "FRAMES"};
 
 // --- lights with shadows ---
 inline constexpr Parameter kShadowDarkness{"shadow-darkness",
@@ -29,6 +29,17 @@ inline constexpr Parameter kLightRadius{"light-radius",
 inline constexpr Parameter kLightAngle{"light-angle",
     "Directional lights with shadows are discs of this angular radius; the sun has .27",
     0.0, kMostAngularRadius, 0.0, "degrees", "DEGREES", "angular_radius_degrees"};
+
+// --- relief impostors ---
+inline constexpr Parameter kImpostorTolerance{"tolerance",
+    "How far a pixel of an impostor may lie from where geometry would have it",
+    0.01, 100.0, ImpostorBudget{}.tolerance_px, "px", "PIXELS", "tolerance_px"};
+inline constexpr Parameter kImpostorMemory{"memory", "Of the impostors' reliefs",
+    0.0, 1e6, ImpostorBudget{}.memory_mb, "MB", "MB", "memory_mb"};
+inline constexpr Parameter kImpostorMilliseconds{"milliseconds",
+    "Of a frame, as predicted from its triangles and texels: what costs more gets a larger "
+    "tolerance; 0: any",
+    0.0, 1e6, ImpostorBudget{}.milliseconds, "ms", "MS"};
 // clang-format on
 
 inline constexpr std::array kShadowKinds{Choice<ShadowKind>{"none", ShadowKind::none},
@@ -42,6 +53,9 @@ inline constexpr std::array kLightKinds{Choice<LightKind>{"directional", LightKi
                                         Choice<LightKind>{"point", LightKind::point}};
 inline constexpr std::array kEasings{Choice<Easing>{"linear", Easing::linear},
                                      Choice<Easing>{"smooth", Easing::smooth}};
+/// Of all objects, in place of what a scene says.
+inline constexpr std::array kImpostorUses{Choice<ImpostorUse>{"auto", ImpostorUse::where_cheaper},
+                                          Choice<ImpostorUse>{"off", ImpostorUse::never}};
 
 // --- shadow maps ---
 struct OfMap {

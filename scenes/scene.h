@@ -2,6 +2,7 @@
 // A scene as data, filled by the loaders and read by draw_scene.
 // World units are metres, y points up, the coordinate system is right-handed.
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <glm/vec2.hpp>
@@ -17,19 +18,6 @@
 
 namespace softfocus {
 
-struct Camera {
-  glm::dvec3 position{0.0, 0.0, 3.0};
-  glm::dvec3 target{0.0};
-  glm::dvec3 up{0.0, 1.0, 0.0};
-  double fov_y_degrees = 40.0;
-  double near_m = 0.1;
-  double far_m = 100.0;
-  /// The camera's way around the target, about `up`, by frame.
-  double orbit_degrees_per_frame = 0.0;
-  /// How long the shutter is open, in frames, that the scene suggests (parameter::kShutter).
-  double shutter_frames = 0.0;
-};
-
 /// From `frame` on, and until the next key's, a value is on its way from `value`.
 struct Keyframe {
   double frame = 0.0;
@@ -39,6 +27,24 @@ struct Keyframe {
 
 /// The way from key to key (draw/frame_matrices.h).
 enum class Easing : std::uint8_t { linear, smooth };
+
+/// Of x, y and z, at the same frames; all empty if there are none.
+using PlaceKeys = std::array<std::vector<Keyframe>, 3>;
+
+struct Camera {
+  glm::dvec3 position{0.0, 0.0, 3.0};  ///< at frame 0, or at its first key
+  glm::dvec3 target{0.0};
+  PlaceKeys position_keys{}, target_keys{};
+  Easing easing = Easing::linear;
+  glm::dvec3 up{0.0, 1.0, 0.0};
+  double fov_y_degrees = 40.0;
+  double near_m = 0.1;
+  double far_m = 100.0;
+  /// The camera's way around the target, about `up`, by frame.
+  double orbit_degrees_per_frame = 0.0;
+  /// How long the shutter is open, in frames, that the scene suggests (parameter::kShutter).
+  double shutter_frames = 0.0;
+};
 
 /// The lens that the scene suggests; the command line can overrule every value.
 struct SceneLens {
@@ -127,6 +133,16 @@ struct Mesh {
   std::vector<glm::vec3> colours{};  ///< multiply ambient and diffuse; one a vertex or none
 };
 
+/// Whether an object is drawn as a relief impostor (relief/impostors/scene_impostors.h): wherever
+/// it can be, or where that is predicted to cost less than its triangles.
+enum class ImpostorUse : std::uint8_t { never, wherever_possible, where_cheaper };
+
+struct ImpostorBudget {
+  double tolerance_px = 1.0;  ///< how far a pixel may lie from where geometry would have it
+  double memory_mb = 256.0;   ///< of the reliefs
+  double milliseconds = 0.0;  ///< predicted, a frame: it raises the tolerance; 0: any
+};
+
 /// A mesh put into the world: scaled, then turned about x, y and z in that order,
 /// then moved.
 struct Object {
@@ -142,7 +158,17 @@ struct Object {
   glm::dvec3 sway{0.0};
   double sway_period_frames = 1.0;
   double sway_phase = 0.0;
+  ImpostorUse impostor = ImpostorUse::never;
 };
+
+/// Whether it stands elsewhere at another frame.
+inline bool moves(const Camera& camera) {
+  return camera.orbit_degrees_per_frame != 0.0 || camera.position_keys[0].size() > 1 ||
+         camera.target_keys[0].size() > 1;
+}
+inline bool moves(const Object& object) {
+  return object.spin_degrees_per_frame != glm::dvec3{0.0} || object.sway != glm::dvec3{0.0};
+}
 
 /// As many halves can be added in binary64 without a rounding (draw/light_points.h).
 inline constexpr int kMostLightPoints = 4096;
@@ -161,6 +187,7 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Mesh> meshes;
   std::vector<Object> objects;
+  ImpostorBudget impostors;
   std::vector<ChosenEffect> effects;  ///< on the finished picture
   /// What was missing, a line each: a model's texture, say.
   std::vector<std::string> warnings;

@@ -24,6 +24,8 @@ inline glm::dvec3 cross(glm::dvec3 a, glm::dvec3 b) {
 }
 
 /// v divided by its length, component by component; the zero vector stays zero.
+inline double length_of(glm::dvec3 v) { return std::sqrt(dot(v, v)); }
+
 inline glm::vec3 normalize(glm::vec3 v) {
   const float length = std::sqrt(dot(v, v));
   return length > 0.0f ? glm::vec3{v.x / length, v.y / length, v.z / length} : glm::vec3{0.0f};

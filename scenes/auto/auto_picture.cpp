@@ -258,7 +258,7 @@ Image picture_of(const AutoMethod& choice, const LensViewInput& views, DofSettin
   const Method& filter = *find_method(choice.method);
   settings.max_coc_px = choice.radius_px;
   return filtered_frame(filter, views.scene, views.camera, views.frame, views.pinhole, settings,
-                        views.profile, pool);
+                        views.profile, pool, views.stand_ins);
 }
 
 AutoPicture auto_picture(const AutoInput& input, ThreadPool& pool) {

@@ -196,6 +196,20 @@ std::size_t chunks_of_mesh(const Mesh& mesh) {
   return (mesh.indices.size() + kChunkIndices - 1) / kChunkIndices;
 }
 
+bool is_hidden(const PreparedScene& prepared, std::size_t object) {
+  return !prepared.hidden.empty() && prepared.hidden[object] != 0;
+}
+
+// Of what is drawn.
+std::size_t chunks_of(const PreparedScene& prepared) {
+  const Scene& scene = *prepared.scene;
+  std::size_t chunks = 0;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    if (!is_hidden(prepared, i)) chunks += chunks_of_mesh(scene.meshes[scene.objects[i].mesh]);
+  }
+  return chunks;
+}
+
 }  // namespace
 
 std::size_t chunks_of_scene(const Scene& scene) {
@@ -258,8 +272,11 @@ void record_scene(const PreparedScene& prepared, const CameraMatrices& camera, d
                   RenderPass& pass, std::span<const Light> lights) {
   pass.clear_colour = clear_colour(*prepared.scene);
   pass.clear_depth = 1.0f;
-  pass.keep_depth = prepared.has_transparent;
-  for (SurfaceDraw& surface : surface_draws(*prepared.scene, camera, frame)) {
+  pass.keep_depth = prepared.has_transparent || prepared.keeps_depth;
+  const std::vector<Object>& objects = prepared.scene->objects;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    if (is_hidden(prepared, i)) continue;
+    SurfaceDraw surface = surface_draw(*prepared.scene, objects[i], camera, frame);
     surface.input.lights = lights;
     if (!surface.opacity.blends) draw_surface(prepared, surface, pass);
   }
@@ -386,7 +403,9 @@ void draw_in_passes(const PreparedScene& prepared, const CameraMatrices& camera,
   pass.clear_depth = 1.0f;
   pass.keep_depth = true;
   std::size_t chunks = 0;
-  for (const Object& object : scene.objects) {
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    if (is_hidden(prepared, i)) continue;
+    const Object& object = scene.objects[i];
     const std::size_t more = chunks_of_mesh(scene.meshes[object.mesh]);
     if (chunks > 0 && chunks + more > kPassChunks) {
       finish(pass, pool);
@@ -410,7 +429,7 @@ void draw_in_passes(const PreparedScene& prepared, const CameraMatrices& camera,
 void draw_lit_by(PreparedScene& prepared, const CameraMatrices& camera, double frame,
                  std::span<const Light> lights, std::span<Image* const> layers, ThreadPool& pool) {
   RenderPass& pass = prepared.pass;
-  if (chunks_of_scene(*prepared.scene) > kPassChunks) {
+  if (chunks_of(prepared) > kPassChunks) {
     draw_in_passes(prepared, camera, frame, lights, pass, pool);
   } else {
     record_scene(prepared, camera, frame, pass, lights);
@@ -475,7 +494,7 @@ void make_sized(Image& image, int width, int height, Format format = Format::rgb
 // Whether all opaque draws of a scene are in lanes, and in one pass.
 bool draws_in_lanes(const PreparedScene& prepared) {
   return !has_shaders(*prepared.scene) && can_draw_in_lanes(prepared.pass, DrawState{}) &&
-         chunks_of_scene(*prepared.scene) <= kPassChunks;
+         chunks_of(prepared) <= kPassChunks;
 }
 
 // Of a picture that has been drawn without them.
@@ -491,7 +510,7 @@ void find_scene_edges(PreparedScene& prepared, const CameraMatrices& camera, dou
                   .behind = {},
                   .samples = to.samples};
   pass.behind_before = {};
-  if (chunks_of_scene(*prepared.scene) > kPassChunks) {
+  if (chunks_of(prepared) > kPassChunks) {
     draw_in_passes(prepared, camera, frame, prepared.scene->lights, pass, pool);
   } else {
     record_scene(prepared, camera, frame, pass);
@@ -501,11 +520,10 @@ void find_scene_edges(PreparedScene& prepared, const CameraMatrices& camera, dou
   find_edges(picture, prepared.sampled_colour, to, pass.profile, pool);
 }
 
-}  // namespace
-
-void draw_layers(PreparedScene& prepared, const CameraMatrices& camera, double frame,
-                 Image& picture, std::span<Image> behind, ThreadPool& pool,
-                 std::optional<double> behind_before_m, EdgePictures* edges) {
+// draw_layers() of triangles.
+void draw_triangles(PreparedScene& prepared, const CameraMatrices& camera, double frame,
+                    Image& picture, std::span<Image> behind, ThreadPool& pool,
+                    std::optional<double> behind_before_m, EdgePictures* edges) {
   assert(behind.size() < kMaxLayers);
   RenderPass& pass = prepared.pass;
   RenderTargets& targets = pass.targets;
@@ -553,6 +571,47 @@ void draw_layers(PreparedScene& prepared, const CameraMatrices& camera, double f
   if (prepared.shadows) take_shown_colours(picture, edges->coverage, edges->other, pool);
 }
 
+// Lays the stand-ins into a picture that has been drawn without what they stand for.
+void lay_stand_ins(PreparedScene& prepared, std::span<Image* const> layers, EdgePictures* edges,
+                   ThreadPool& pool) {
+  const bool has_edges = edges != nullptr && edges->samples > 1;
+  std::vector<std::uint8_t> changed;
+  const auto width = static_cast<std::size_t>(layers[0]->width);
+  if (has_edges || prepared.has_transparent || prepared.keeps_depth) {
+    changed.assign(width * static_cast<std::size_t>(layers[0]->height), 0);
+  }
+  prepared.stand_ins->lay(layers, changed, pool);
+  if (changed.empty()) return;
+  pool.for_each(layers[0]->height, [&](int y) {
+    const std::uint8_t* is_changed = changed.data() + width * static_cast<std::size_t>(y);
+    const std::uint16_t* texels = row<std::uint16_t>(*layers[0], y).data();
+    float* depths = row<float>(prepared.depth, y).data();
+    std::uint8_t* coverage = has_edges ? row<std::uint8_t>(edges->coverage, y).data() : nullptr;
+    for (std::size_t x = 0; x < width; ++x) {
+      if (is_changed[x] == 0) continue;
+      depths[x] = buffer_depth(prepared.scene->camera,
+                               static_cast<double>(half_to_float(texels[4 * x + 3])));
+      if (coverage != nullptr) coverage[x] = 0;
+    }
+  });
+}
+
+}  // namespace
+
+void draw_layers(PreparedScene& prepared, const CameraMatrices& camera, double frame,
+                 Image& picture, std::span<Image> behind, ThreadPool& pool,
+                 std::optional<double> behind_before_m, EdgePictures* edges) {
+  if (prepared.stand_ins == nullptr) {
+    return draw_triangles(prepared, camera, frame, picture, behind, pool, behind_before_m, edges);
+  }
+  prepared.hidden = prepared.stand_ins->prepare(camera, frame, picture.width, picture.height, pool);
+  draw_triangles(prepared, camera, frame, picture, behind, pool, behind_before_m, edges);
+  prepared.hidden.clear();
+  std::vector<Image*> layers{&picture};
+  for (Image& layer : behind) layers.push_back(&layer);
+  lay_stand_ins(prepared, layers, edges, pool);
+}
+
 Image draw_scene(const Scene& scene, const CameraMatrices& camera, double frame, int width,
                  int height, const Profile& profile, ThreadPool& pool) {
   Image picture = make_image(Format::rgba16f, width, height);
@@ -598,7 +657,8 @@ void blend(FrameParts& parts, const Profile& profile, ThreadPool& pool) {
 
 Image filtered_frame(const Method& method, const Scene& scene, const CameraMatrices& camera,
                      double frame, const Image& picture, const DofSettings& settings,
-                     const Profile& profile, ThreadPool& pool) {
+                     const Profile& profile, ThreadPool& pool,
+                     std::shared_ptr<const StandIns> stand_ins) {
   const int width = picture.width, height = picture.height;
   const std::vector<std::uint16_t> objects =
       object_numbers_for(method, scene, camera, frame, width, height, profile, pool);
@@ -606,6 +666,7 @@ Image filtered_frame(const Method& method, const Scene& scene, const CameraMatri
     return apply(method, {picture, settings, profile, objects}, pool);
   }
   PreparedScene prepared = prepare_scene(scene, profile, pool);
+  prepared.stand_ins = std::move(stand_ins);
   FrameParts parts;
   draw_parts(prepared, camera, frame, width, height, method.layers, parts, pool,
              static_cast<double>(settings.coc.focus_m));

@@ -66,6 +66,22 @@ glm::vec4 clear_colour(const Scene& scene);
 Image draw_scene(const Scene& scene, const CameraMatrices& camera, double frame, int width,
                  int height, const Profile& profile, ThreadPool& pool);
 
+/// Draws some objects of a scene otherwise than as triangles
+/// (relief/impostors/scene_impostors.h).
+struct StandIns {
+  /// Makes them ready for a view. Returns what they stand for: an entry for each of the scene's
+  /// objects, not 0 if its triangles are not drawn.
+  std::function<std::vector<std::uint8_t>(const CameraMatrices& camera, double frame, int width,
+                                          int height, ThreadPool& pool)>
+      prepare;
+  /// Lays them into pictures of that view, from which the objects were left out: opaque layers, the
+  /// nearest first, as draw_layers() has them. Sets `changed`, an entry for each pixel, where the
+  /// first layer shows them.
+  std::function<void(std::span<Image* const> layers, std::span<std::uint8_t> changed,
+                     ThreadPool& pool)>
+      lay;
+};
+
 /// A scene made ready for many frames: decoded textures, and memory to use again.
 struct PreparedScene {
   const Scene* scene = nullptr;
@@ -80,6 +96,10 @@ struct PreparedScene {
   TransparentTargets transparent{};
   /// If a light of the scene has shadows.
   std::shared_ptr<SceneShadows> shadows{};
+  std::shared_ptr<const StandIns> stand_ins{};  ///< if any
+  /// Objects that are not drawn, though they cast shadows: an entry each, or none at all.
+  std::vector<std::uint8_t> hidden{};
+  bool keeps_depth = false;  ///< `depth` is wanted once the scene is drawn
   /// Told how many points of soft lights have been drawn by; may be empty.
   std::function<void(int points)> on_light_points = {};
 };
@@ -205,6 +225,7 @@ auto with_dof_input(const FrameParts& parts, const DofSettings& settings, const 
 /// A frame by a method, with all that the method reads of the scene. `picture` is draw_scene()'s.
 Image filtered_frame(const Method& method, const Scene& scene, const CameraMatrices& camera,
                      double frame, const Image& picture, const DofSettings& settings,
-                     const Profile& profile, ThreadPool& pool);
+                     const Profile& profile, ThreadPool& pool,
+                     std::shared_ptr<const StandIns> stand_ins = {});
 
 }  // namespace softfocus

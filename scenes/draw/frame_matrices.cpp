@@ -56,12 +56,28 @@ glm::dmat4 perspective(double fov_y_degrees, double aspect, double near_m, doubl
 
 }  // namespace
 
+namespace {
+
+glm::dvec3 place_at(const PlaceKeys& keys, Easing easing, glm::dvec3 without, double frame) {
+  if (keys[0].empty()) return without;
+  return {value_at(keys[0], easing, frame), value_at(keys[1], easing, frame),
+          value_at(keys[2], easing, frame)};
+}
+
+}  // namespace
+
+glm::dvec3 target_at(const Camera& camera, double frame) {
+  return place_at(camera.target_keys, camera.easing, camera.target, frame);
+}
+
 CameraMatrices camera_matrices(const Camera& camera, double frame, int width, int height) {
-  const glm::dvec3 arm = turn_about(camera.position - camera.target, normalize(camera.up),
-                                    camera.orbit_degrees_per_frame * frame);
+  const glm::dvec3 target = target_at(camera, frame);
+  const glm::dvec3 position = place_at(camera.position_keys, camera.easing, camera.position, frame);
+  const glm::dvec3 arm =
+      turn_about(position - target, normalize(camera.up), camera.orbit_degrees_per_frame * frame);
   CameraMatrices matrices{};
-  matrices.eye = camera.target + arm;
-  matrices.world_to_eye = look_at(matrices.eye, camera.target, camera.up);
+  matrices.eye = target + arm;
+  matrices.world_to_eye = look_at(matrices.eye, target, camera.up);
   matrices.eye_to_clip =
       perspective(camera.fov_y_degrees, static_cast<double>(width) / static_cast<double>(height),
                   camera.near_m, camera.far_m);

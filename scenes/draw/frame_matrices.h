@@ -18,6 +18,9 @@ struct CameraMatrices {
   glm::dvec3 eye;  ///< in the world
 };
 
+/// What the camera looks at.
+glm::dvec3 target_at(const Camera& camera, double frame);
+
 /// The scene's camera at a frame, for a picture of `width` x `height` square pixels.
 CameraMatrices camera_matrices(const Camera& camera, double frame, int width, int height);
 

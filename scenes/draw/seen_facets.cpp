@@ -96,11 +96,11 @@ NumberLaneStages number_lane_stages(Isa isa) {
 }
 
 void record_numbers(const NumberedScene& numbered, const Scene& scene, const CameraMatrices& camera,
-                    double frame, RenderPass& pass) {
+                    double frame, std::span<const std::uint8_t> hidden, RenderPass& pass) {
   const std::vector<SurfaceDraw> surfaces = surface_draws(scene, camera, frame);
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     const SurfaceDraw& surface = surfaces[i];
-    if (surface.opacity.blends) continue;
+    if (surface.opacity.blends || (!hidden.empty() && hidden[i] != 0)) continue;
     const NumberedMesh& mesh = numbered.meshes[i];
     const auto corners = static_cast<std::uint32_t>(mesh.positions.size());
     const std::span indices = std::span{numbered.indices}.first(corners);
@@ -164,7 +164,8 @@ std::vector<std::vector<SeenFacet>> draw_seen_facets(NumberedScene& numbered, co
                                                      const CameraMatrices& camera, double frame,
                                                      int width, int height, std::size_t layers,
                                                      ThreadPool& pool,
-                                                     std::optional<float> behind_before) {
+                                                     std::optional<float> behind_before,
+                                                     std::span<const std::uint8_t> hidden) {
   set_images(numbered.layers, layers, Format::rgba16f, width, height);
   set_images(numbered.depths, layers, Format::r32f, width, height);
   RenderPass& pass = numbered.pass;
@@ -178,7 +179,7 @@ std::vector<std::vector<SeenFacet>> draw_seen_facets(NumberedScene& numbered, co
   pass.clear_depth = 1.0f;
   pass.behind_before = behind_before;
   pass.keep_depth = false;
-  record_numbers(numbered, scene, camera, frame, pass);
+  record_numbers(numbered, scene, camera, frame, hidden, pass);
   finish(pass, pool);
 
   const auto columns = static_cast<std::size_t>(width);

@@ -29,11 +29,13 @@ struct NumberedScene {
 NumberedScene number_triangles(const Scene& scene, const Profile& profile, Isa isa);
 
 /// The facet at each pixel's centre in the first, second ... opaque layer, as draw_layers() has
-/// them. Facets are numbered as the scene's triangles, object by object.
+/// them. Facets are numbered as the scene's triangles, object by object. `hidden` is as
+/// PreparedScene has it.
 std::vector<std::vector<SeenFacet>> draw_seen_facets(NumberedScene& numbered, const Scene& scene,
                                                      const CameraMatrices& camera, double frame,
                                                      int width, int height, std::size_t layers,
                                                      ThreadPool& pool,
-                                                     std::optional<float> behind_before);
+                                                     std::optional<float> behind_before,
+                                                     std::span<const std::uint8_t> hidden = {});
 
 }  // namespace softfocus

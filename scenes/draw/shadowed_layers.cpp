@@ -22,10 +22,6 @@ bool is_cut_out(const Material& material, const Mesh& mesh) {
   return material.opacity_texture && !mesh.uvs.empty() && material.cut_out;
 }
 
-bool moves(const Object& object) {
-  return object.spin_degrees_per_frame != glm::dvec3{0.0} || object.sway != glm::dvec3{0.0};
-}
-
 // Another kind of shadows' dark sides, alone.
 ProjectedShadows without_triangles(const Facets& facets, const ShadowLight& light) {
   return {lit_sides(facets, light), std::vector<std::size_t>(facets.receivers.size() + 1), {}};
@@ -401,7 +397,8 @@ std::shared_ptr<SceneShadows> make_scene_shadows(const Scene& scene, const Profi
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     if (scene.lights[i].shadows != ShadowKind::none) shadows->lights.push_back(i);
   }
-  shadows->moves = std::any_of(scene.objects.begin(), scene.objects.end(), moves);
+  shadows->moves = std::any_of(scene.objects.begin(), scene.objects.end(),
+                               [](const Object& object) { return moves(object); });
   shadows->pass.profile = profile;
   shadows->pass.isa = pool.isa();
   return shadows;
@@ -421,7 +418,7 @@ void add_shadows(const PreparedScene& prepared, const CameraMatrices& camera, do
   const int width = layers[0]->width, height = layers[0]->height;
   update(shadows, scene, lights, frame, pool);
   shadows.seen = draw_seen_facets(shadows.numbered, scene, camera, frame, width, height,
-                                  layers.size(), pool, behind_before);
+                                  layers.size(), pool, behind_before, prepared.hidden);
   draw_masks(shadows, scene, lights, camera, width, height, shadows.pass.profile, pool);
   const Tiles tiles = find_masks(shadows, width, height, pool);
   const std::vector<std::vector<int>> with_shares =

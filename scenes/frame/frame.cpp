@@ -14,6 +14,7 @@
 #include "scenes/draw/object_numbers.h"
 #include "scenes/draw/velocity.h"
 #include "scenes/load/pipeline_file.h"
+#include "scenes/relief/impostors/scene_impostors.h"
 
 namespace softfocus {
 namespace {
@@ -119,7 +120,7 @@ Image filtered(const Shot& shot, const DrawnFrame& drawn, const UsedLens& lens, 
   const bool reads_more = layers > 1 || (shot.scene != nullptr && has_transparent(*shot.scene));
   if (shot.scene != nullptr && drawn.layers < layers && reads_more) {
     return filtered_frame(method, *shot.scene, drawn.view, shot.frame, parts.picture(),
-                          lens.settings, shot.profile, pool);
+                          lens.settings, shot.profile, pool, drawn.stand_ins);
   }
   std::vector<std::uint16_t> objects;
   if (drawn.objects.empty() && layers > 0 && shot.scene != nullptr) {
@@ -229,7 +230,14 @@ void draw_shot(const Shot& shot, FrameMemory& memory, DrawnFrame& drawn, ThreadP
     drawn.parts = hooks.draw(drawn.view, width, height, drawn.layers);
     return;
   }
-  if (!memory.prepared) memory.prepared = prepare_scene(*shot.scene, shot.profile, pool);
+  if (!memory.prepared) {
+    memory.prepared = prepare_scene(*shot.scene, shot.profile, pool);
+    memory.prepared->stand_ins = shot.stand_ins;
+    if (shot.stand_ins == nullptr && has_impostors(*shot.scene)) {
+      memory.prepared->stand_ins = stand_ins_of(make_scene_impostors(*shot.scene, pool));
+    }
+  }
+  drawn.stand_ins = memory.prepared->stand_ins;
   memory.prepared->on_light_points = hooks.on_light_points;
   const bool is_after_others = !shot.effects.empty() && is_of_frames(*shot.effects.front().effect);
   if (!is_after_others || drawn.layers > 1) {
@@ -378,7 +386,8 @@ LensViewInput lens_views_of(const Shot& shot, const DrawnFrame& drawn, const Use
           .aperture_radius_m = lens.aperture_radius_m,
           .sampling = shot.sampling,
           .profile = shot.profile,
-          .progress = {}};
+          .progress = {},
+          .stand_ins = drawn.stand_ins};
 }
 
 Image with_effects(Image picture, const std::vector<ChosenEffect>& effects,

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <glm/vec2.hpp>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -86,6 +87,8 @@ struct Shot {
   std::optional<float> most_coc_px = {};   ///< that auto must keep to
   std::vector<ChosenEffect> effects = {};  ///< in their order; one of frames comes first
   FrameSequence* sequence = nullptr;       ///< for an effect of frames; null: it begins here
+  /// Of the scene's impostors, kept over frames; null: they are made for this one.
+  std::shared_ptr<const StandIns> stand_ins = {};
   Profile profile = {};
 };
 
@@ -99,7 +102,8 @@ struct DrawnFrame {
   /// The opaque surfaces of a pixel that `parts` has, with those that are transparent. 0: a picture
   /// alone; a method that reads more has it drawn.
   std::size_t layers = 0;
-  std::vector<std::uint16_t> objects{};  ///< DofInput::objects, if the method reads them
+  std::shared_ptr<const StandIns> stand_ins{};  ///< by which it was drawn, if any
+  std::vector<std::uint16_t> objects{};         ///< DofInput::objects, if the method reads them
   std::optional<double> shaded_share{};  ///< of the pixels, where frames take from those before
 };
 

@@ -11,6 +11,7 @@
 #include "dof/two_pass/two_pass_stream.h"
 #include "raster/threads/loops.h"
 #include "scenes/draw/shadowed_layers.h"
+#include "scenes/relief/impostors/scene_impostors.h"
 
 namespace softfocus {
 namespace {
@@ -45,6 +46,7 @@ std::string why_whole(const Shot& shot, Isa isa) {
   if (shot.lens && shot.lens->cuts_no_circle) return "its largest circle is looked for";
   if (has_transparent(scene)) return "the scene has transparent surfaces";
   if (has_shadows(scene)) return "the scene has shadows";
+  if (has_impostors(scene)) return "objects are impostors";
   if (has_shaders(scene)) return "materials have shaders";
   if (chunks_of_scene(scene) > kPassChunks) return "the scene is drawn in several passes";
   const bool in_lanes = isa != Isa::scalar && shot.profile.coverage == Coverage::edge_functions &&

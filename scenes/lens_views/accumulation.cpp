@@ -139,21 +139,24 @@ std::vector<double> times_in_frames(std::vector<double> parts, double shutter_fr
 AccumulationBuffer make_accumulation_buffer(const LensViewInput& input, ThreadPool& pool) {
   const int width = input.pinhole.width, height = input.pinhole.height;
   const Sampling& sampling = input.sampling;
-  return {lens_points(sampling.aperture, sampling.samples),
-          pixel_offsets(sampling.jitter, sampling.samples),
-          sampling.shutter_frames == 0.0
-              ? std::vector<double>{}
-              : times_in_frames(shutter_sequence(sampling.samples), sampling.shutter_frames),
-          input.prepared != nullptr ? std::move(*input.prepared)
-                                    : prepare_scene(input.scene, input.profile, pool),
-          make_image(Format::rgba16f, width, height),
-          make_image(Format::r32f, width, height),
-          {},
-          {},
-          {},
-          {},
-          {},
-          {}};
+  AccumulationBuffer buffer{
+      lens_points(sampling.aperture, sampling.samples),
+      pixel_offsets(sampling.jitter, sampling.samples),
+      sampling.shutter_frames == 0.0
+          ? std::vector<double>{}
+          : times_in_frames(shutter_sequence(sampling.samples), sampling.shutter_frames),
+      input.prepared != nullptr ? std::move(*input.prepared)
+                                : prepare_scene(input.scene, input.profile, pool),
+      make_image(Format::rgba16f, width, height),
+      make_image(Format::r32f, width, height),
+      {},
+      {},
+      {},
+      {},
+      {},
+      {}};
+  buffer.prepared.stand_ins = input.stand_ins;
+  return buffer;
 }
 
 namespace {
@@ -181,7 +184,7 @@ void make_transparent_passes(AccumulationBuffer& buffer, std::size_t count) {
 // The pinhole camera at another time than the picture's.
 CameraMatrices camera_at(const LensViewInput& input, double frame) {
   const Camera& camera = input.scene.camera;
-  if (frame == input.frame || camera.orbit_degrees_per_frame == 0.0) return input.camera;
+  if (frame == input.frame || !moves(camera)) return input.camera;
   return camera_matrices(camera, frame, input.pinhole.width, input.pinhole.height);
 }
 
@@ -199,16 +202,29 @@ LensView lens_view(const AccumulationBuffer& buffer, const LensViewInput& input,
                              buffer.offsets[sample], buffer.picture.width, buffer.picture.height)};
 }
 
-// A view's shadows are found from all of its pixels, so it is drawn whole.
-void draw_shadowed_views(AccumulationBuffer& buffer, const LensViewInput& input, std::size_t begin,
-                         std::size_t count, ThreadPool& pool) {
+// A view's shadows are found from all of its pixels, and so are stand-ins.
+bool is_drawn_whole(const PreparedScene& prepared) {
+  return prepared.shadows != nullptr || prepared.stand_ins != nullptr;
+}
+
+// With stand-ins, and what is transparent before them.
+bool has_transparent_passes(const PreparedScene& prepared) {
+  return prepared.has_transparent && prepared.stand_ins == nullptr;
+}
+
+void draw_whole_views(AccumulationBuffer& buffer, const LensViewInput& input, std::size_t begin,
+                      std::size_t count, ThreadPool& pool) {
   const int width = buffer.picture.width, height = buffer.picture.height;
-  while (buffer.shadowed.size() < count) {
-    buffer.shadowed.push_back(make_image(Format::rgba16f, width, height));
+  while (buffer.whole.size() < count) {
+    buffer.whole.push_back(make_image(Format::rgba16f, width, height));
   }
   for (std::size_t i = 0; i < count; ++i) {
     const LensView view = lens_view(buffer, input, begin + i);
-    draw_layers(buffer.prepared, view.camera, view.frame, buffer.shadowed[i], {}, pool);
+    if (buffer.prepared.stand_ins != nullptr) {
+      draw_scene(buffer.prepared, view.camera, view.frame, buffer.whole[i], pool);
+    } else {
+      draw_layers(buffer.prepared, view.camera, view.frame, buffer.whole[i], {}, pool);
+    }
   }
 }
 
@@ -231,9 +247,10 @@ void sort_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int
   assert(end - begin <= kLensViewGroup);
   assert(static_cast<std::size_t>(end) <= buffer.points.size());
   assert(buffer.times.empty() || static_cast<std::size_t>(end) <= buffer.times.size());
-  const bool has_transparent = buffer.prepared.has_transparent;
-  if (buffer.prepared.shadows) {
-    draw_shadowed_views(buffer, input, static_cast<std::size_t>(begin), count, pool);
+  const bool has_transparent = has_transparent_passes(buffer.prepared);
+  const bool is_whole = is_drawn_whole(buffer.prepared);
+  if (is_whole) {
+    draw_whole_views(buffer, input, static_cast<std::size_t>(begin), count, pool);
   }
   for (std::size_t i = 0; i < count; ++i) pass_of(buffer.passes, i, buffer.prepared);
   if (has_transparent) make_transparent_passes(buffer, count);
@@ -245,7 +262,8 @@ void sort_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int
     passes[i].targets.colour[0] = &buffer.picture;  // the buffer may have moved
     passes[i].targets.depth = &buffer.depth;
     const auto& [frame, camera] = lens_view(buffer, input, static_cast<std::size_t>(begin) + i);
-    record_scene(buffer.prepared, camera, frame, passes[i]);
+    // What is transparent is blended tile by tile, by the depths of what is not.
+    if (!is_whole || has_transparent) record_scene(buffer.prepared, camera, frame, passes[i]);
     if (!has_transparent) return;
     record_transparent(buffer.prepared, camera, frame, buffer.transparent_passes[i]);
   });
@@ -257,11 +275,13 @@ void sort_lens_views(AccumulationBuffer& buffer, const LensViewInput& input, int
 
 void draw_view_tile(AccumulationBuffer& buffer, std::size_t i, int tile, TileMemory& memory,
                     std::byte* texels) {
-  draw_tile_aside(buffer.passes[i], buffer.tile_lists[i], tile, memory, texels);
-  if (buffer.prepared.shadows) {
-    copy_tile(buffer.shadowed[i], tile_area(buffer.tile_lists[i], tile), texels);
+  const bool is_whole = is_drawn_whole(buffer.prepared);
+  const bool has_transparent = has_transparent_passes(buffer.prepared);
+  if (!is_whole || has_transparent) {
+    draw_tile_aside(buffer.passes[i], buffer.tile_lists[i], tile, memory, texels);
   }
-  if (!buffer.prepared.has_transparent) return;
+  if (is_whole) copy_tile(buffer.whole[i], tile_area(buffer.tile_lists[i], tile), texels);
+  if (!has_transparent) return;
   const RenderPass& pass = buffer.transparent_passes[i];
   const std::size_t layers = draw_transparent_tile(pass, buffer.transparent_lists[i], tile,
                                                    buffer.depth, buffer.transparent, memory);

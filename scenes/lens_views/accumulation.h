@@ -70,7 +70,7 @@ struct AccumulationBuffer {
   std::vector<RenderPass> transparent_passes;
   std::vector<TileLists> transparent_lists;
   /// Likewise, if a light has shadows: the views, whole.
-  std::vector<Image> shadowed;
+  std::vector<Image> whole;
 };
 
 /// With lens_points(), pixel_offsets() and the shutter_sequence() for up to

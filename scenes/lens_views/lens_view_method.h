@@ -67,7 +67,8 @@ struct LensViewInput {
   /// The prepared scene of the pinhole's picture, to be moved from. Null: the scene is prepared
   /// anew if the method needs it.
   PreparedScene* prepared = nullptr;
-  LensViewMemory* memory = nullptr;  ///< to use again, if there is one
+  LensViewMemory* memory = nullptr;             ///< to use again, if there is one
+  std::shared_ptr<const StandIns> stand_ins{};  ///< of the scene's views, if any
 };
 
 struct SampledPicture {

@@ -22,10 +22,60 @@ namespace {
 constexpr std::size_t kMaxSceneBytes = std::size_t{1} << 24;
 constexpr double kBrightest = 1000.0;
 
+constexpr Range kFramesAndPlaces{std::min(parameter::kFrame.least, kAnyPlace.low),
+                                 std::max(parameter::kFrame.most, kAnyPlace.high)};
+
+glm::dvec3 key_place(const PlaceKeys& keys, std::size_t i) {
+  return {keys[0][i].value, keys[1][i].value, keys[2][i].value};
+}
+
+/// Three numbers, or an array of [frame, x, y, z]: then the first place, and all of them in `keys`.
+glm::dvec3 read_keyed_place(Section& section, std::string_view key, glm::dvec3 fallback,
+                            PlaceKeys& keys) {
+  const toml::node* node = find_key(section, key);
+  const toml::array* rows = node != nullptr ? node->as_array() : nullptr;
+  if (rows == nullptr || rows->empty() || !rows->front().is_array()) {
+    return read_vector(section, key, fallback, kAnyPlace);
+  }
+  for (const auto& row : read_rows(section, key, 4, kFramesAndPlaces)) {
+    if (!is_allowed(parameter::kFrame, row[0]) ||
+        (!keys[0].empty() && row[0] <= keys[0].back().frame)) {
+      fail_at(section, key,
+              "has frames that do not increase from 0 on; [[0, 0, 1, 5], [90, 0, 1, 2]] would be "
+              "right");
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double value = row[axis + 1];
+      if (value < kAnyPlace.low || value > kAnyPlace.high) {
+        fail_at(section, key,
+                "has a place out of range; " + wanted_text(parameter::kPlace) + " would be right");
+      }
+      keys[axis].push_back({row[0], value});
+    }
+  }
+  return key_place(keys, 0);
+}
+
+/// Throws SceneError where the camera cannot look.
+void check_view(const Section& section, const Camera& camera, glm::dvec3 position,
+                glm::dvec3 target) {
+  const glm::dvec3 forwards = target - position;
+  if (forwards == glm::dvec3{0.0}) {
+    fail_at(section, "target", "is the camera's position; another point would be right");
+  }
+  // Shorter than this, the sideways axis would be rounding noise.
+  const glm::dvec3 sideways = cross(normalize(forwards), normalize(camera.up));
+  if (dot(sideways, sideways) < 1e-12) {
+    fail_at(section, "up",
+            "points along the view (or nowhere); a direction across it would be right");
+  }
+}
+
 Camera read_camera(Section section) {
   Camera camera;
-  camera.position = read_vector(section, "position", camera.position, kAnyPlace);
-  camera.target = read_vector(section, "target", camera.target, kAnyPlace);
+  camera.position = read_keyed_place(section, "position", camera.position, camera.position_keys);
+  camera.target = read_keyed_place(section, "target", camera.target, camera.target_keys);
+  camera.easing = read_choice(section, "keyframes", camera.easing, parameter::kEasings);
   camera.up = read_vector(section, "up", camera.up, kAnyPlace);
   camera.fov_y_degrees = read_number(section, parameter::kFov, camera.fov_y_degrees);
   camera.near_m = read_number(section, "near_m", camera.near_m, kAnySize);
@@ -36,15 +86,16 @@ Camera read_camera(Section section) {
   if (camera.near_m >= camera.far_m) {
     fail_at(section, "far_m", "must be larger than near_m");
   }
-  const glm::dvec3 forwards = camera.target - camera.position;
-  if (forwards == glm::dvec3{0.0}) {
-    fail_at(section, "target", "is the camera's position; another point would be right");
-  }
-  // Shorter than this, the sideways axis would be rounding noise.
-  const glm::dvec3 sideways = cross(normalize(forwards), normalize(camera.up));
-  if (dot(sideways, sideways) < 1e-12) {
-    fail_at(section, "up",
-            "points along the view (or nowhere); a direction across it would be right");
+  check_view(section, camera, camera.position, camera.target);
+  // With both on their way, keys alone do not say where they meet.
+  if (camera.target_keys[0].empty()) {
+    for (std::size_t i = 0; i < camera.position_keys[0].size(); ++i) {
+      check_view(section, camera, key_place(camera.position_keys, i), camera.target);
+    }
+  } else if (camera.position_keys[0].empty()) {
+    for (std::size_t i = 0; i < camera.target_keys[0].size(); ++i) {
+      check_view(section, camera, camera.position, key_place(camera.target_keys, i));
+    }
   }
   finish_section(section);
   return camera;
@@ -137,6 +188,15 @@ Light read_light(Section& section) {
   return light;
 }
 
+ImpostorBudget read_impostors(Section section) {
+  ImpostorBudget budget;
+  budget.tolerance_px = read_number(section, parameter::kImpostorTolerance, budget.tolerance_px);
+  budget.memory_mb = read_number(section, parameter::kImpostorMemory, budget.memory_mb);
+  budget.milliseconds = read_number(section, parameter::kImpostorMilliseconds, budget.milliseconds);
+  finish_section(section);
+  return budget;
+}
+
 ChosenEffect read_effect(Section& section) {
   const std::string name = read_text(section, "name", "");
   const Effect* const effect = find_effect(name);
@@ -189,6 +249,7 @@ Scene read_scene_text(std::string_view text, const std::filesystem::path& file, 
   for (Section& effect : read_sections(top, "effect")) scene.effects.push_back(read_effect(effect));
 
   const NamedSurfaces surfaces = read_surfaces(top, file.parent_path(), scene, pool);
+  scene.impostors = read_impostors(read_section(top, "impostors"));
   read_objects(top, file.parent_path(), surfaces, scene, pool);
   finish_section(top);
   return scene;

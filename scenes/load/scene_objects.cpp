@@ -1,6 +1,8 @@
 #include "scenes/load/scene_sections.h"
 
+#include <map>
 #include <optional>
+#include <utility>
 
 #include "raster/numbers/random_bits.h"
 #include "scenes/load/model_scene.h"
@@ -11,6 +13,16 @@ namespace softfocus {
 namespace {
 
 constexpr Range kAnyAngle{-36000.0, 36000.0};
+
+ImpostorUse read_impostor(Section& section) {
+  const toml::node* node = find_key(section, "impostor");
+  if (node == nullptr) return ImpostorUse::never;
+  if (node->is_boolean()) {
+    return *node->value<bool>() ? ImpostorUse::wherever_possible : ImpostorUse::never;
+  }
+  if (node->value<std::string_view>() == "auto") return ImpostorUse::where_cheaper;
+  fail_at(section, "impostor", "is none of true, false and \"auto\"");
+}
 
 // Where and how an object stands and moves; mesh and material are the caller's.
 Object read_placement(Section& section) {
@@ -29,6 +41,11 @@ Object read_placement(Section& section) {
   object.sway = read_vector(section, "sway", object.sway, kAnyPlace);
   object.sway_period_frames = read_number(section, "sway_period_frames", 100.0, {1.0, 1e6});
   object.sway_phase = read_number(section, "sway_phase", object.sway_phase, {-1.0, 1.0});
+  object.impostor = read_impostor(section);
+  if (object.impostor != ImpostorUse::never && moves(object)) {
+    fail_at(section, "impostor",
+            "is of an object that moves; false, or neither spin nor sway, would be right");
+  }
   return object;
 }
 
@@ -58,21 +75,44 @@ std::uint32_t read_material_key(Section& section, const NamedSurfaces& surfaces)
   return material_named(section, "material", read_text(section, "material", ""), surfaces);
 }
 
+/// The objects of a model's file that has been read, for others of the same file.
+struct ReadModel {
+  std::size_t first_object, count;
+};
+/// By the file, and whether it has its own materials.
+using ReadModels = std::map<std::pair<std::filesystem::path, bool>, ReadModel>;
+
 void read_model(Section& section, const std::filesystem::path& directory,
-                const NamedSurfaces& surfaces, Scene& scene, ThreadPool* pool) {
+                const NamedSurfaces& surfaces, ReadModels& models, Scene& scene, ThreadPool* pool) {
   if (!has_key(section, "file")) {
     fail_at(section, "file", "is missing; the path of an OBJ file would be right");
   }
   const Object placement = read_placement(section);
   std::optional<std::uint32_t> material;
   if (has_key(section, "material")) material = read_material_key(section, surfaces);
-  add_model(scene, load_obj_model(directory / read_text(section, "file", ""), pool), placement,
-            material);
+  const std::filesystem::path file = directory / read_text(section, "file", "");
+  const auto [place, is_new] = models.try_emplace({file, !material}, ReadModel{});
+  ReadModel& model = place->second;
+  if (is_new) {
+    model.first_object = scene.objects.size();
+    add_model(scene, load_obj_model(file, pool), placement, material);
+    model.count = scene.objects.size() - model.first_object;
+    return;
+  }
+  for (std::size_t i = 0; i < model.count; ++i) {
+    const Object& same = scene.objects[model.first_object + i];
+    Object object = placement;
+    object.mesh = same.mesh;
+    object.mesh_origin = same.mesh_origin;
+    object.material = material.value_or(same.material);
+    scene.objects.push_back(object);
+  }
 }
 
 void read_object(Section& section, const std::filesystem::path& directory,
-                 const NamedSurfaces& surfaces, Scene& scene, ThreadPool* pool) {
-  if (is_model(section)) return read_model(section, directory, surfaces, scene, pool);
+                 const NamedSurfaces& surfaces, ReadModels& models, Scene& scene,
+                 ThreadPool* pool) {
+  if (is_model(section)) return read_model(section, directory, surfaces, models, scene, pool);
   Object object = read_placement(section);
   object.material = read_material_key(section, surfaces);
   object.mesh = add_mesh(section, scene, read_shape(section));
@@ -151,8 +191,9 @@ void read_balls(Section& section, const NamedSurfaces& surfaces, std::vector<Bal
 
 void read_objects(Section& top, const std::filesystem::path& directory,
                   const NamedSurfaces& surfaces, Scene& scene, ThreadPool* pool) {
+  ReadModels models;
   for (Section& section : read_sections(top, "object")) {
-    read_object(section, directory, surfaces, scene, pool);
+    read_object(section, directory, surfaces, models, scene, pool);
     finish_section(section);
   }
   std::vector<Ball> placed;

@@ -112,9 +112,28 @@ glm::dmat4 perspective_clip(const ReliefCamera& camera, int width, int height) {
 
 }  // namespace
 
-ReliefMaker prepare_relief(const Scene& scene, double frame, ThreadPool& pool) {
-  ReliefMaker maker{&scene, frame, prepare_scene(scene, Profile{}, pool), {}, {}, {}, 0.0, {},
+ReliefMaker relief_maker(const Scene& scene, ThreadPool& pool) {
+  ReliefMaker maker{&scene, 0.0, prepare_scene(scene, Profile{}, pool), {}, {}, {}, 0.0, {},
                     {},     {}};
+  maker.unlit = scene.materials;
+  for (Material& material : maker.unlit) {
+    material.lit = false;
+    material.specular = glm::vec3{0.0f};
+  }
+  maker.code_of_half.resize(65536);
+  pool.for_each(256, [&](int high_byte) {
+    for (int low_byte = 0; low_byte < 256; ++low_byte) {
+      const int half = 256 * high_byte + low_byte;
+      maker.code_of_half[static_cast<std::size_t>(half)] =
+          linear_to_srgb8(half_to_float(static_cast<std::uint16_t>(half)));
+    }
+  });
+  return maker;
+}
+
+ReliefMaker prepare_relief(const Scene& scene, double frame, ThreadPool& pool) {
+  ReliefMaker maker = relief_maker(scene, pool);
+  maker.frame = frame;
   glm::dvec3 low{kFarAway}, high{-kFarAway};
   for (const Object& object : scene.objects) {
     const glm::dmat4 to_world = object_matrix(object, frame);
@@ -138,19 +157,6 @@ ReliefMaker prepare_relief(const Scene& scene, double frame, ThreadPool& pool) {
     maker.radius_m = std::max(maker.radius_m, dot(out, out));
   }
   maker.radius_m = std::sqrt(maker.radius_m);
-  maker.unlit = scene.materials;
-  for (Material& material : maker.unlit) {
-    material.lit = false;
-    material.specular = glm::vec3{0.0f};
-  }
-  maker.code_of_half.resize(65536);
-  pool.for_each(256, [&](int high_byte) {
-    for (int low_byte = 0; low_byte < 256; ++low_byte) {
-      const int half = 256 * high_byte + low_byte;
-      maker.code_of_half[static_cast<std::size_t>(half)] =
-          linear_to_srgb8(half_to_float(static_cast<std::uint16_t>(half)));
-    }
-  });
   return maker;
 }
 

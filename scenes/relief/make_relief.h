@@ -52,6 +52,9 @@ struct ReliefMaker {
   std::vector<Material> unlit;  ///< the scene's, with neither light nor highlight
 };
 
+/// Without points: middle and radius are for the caller to set. `pool` is the one that will draw.
+ReliefMaker relief_maker(const Scene& scene, ThreadPool& pool);
+
 /// Needs a scene with a triangle. `pool` is the one that will draw.
 ReliefMaker prepare_relief(const Scene& scene, double frame, ThreadPool& pool);
 

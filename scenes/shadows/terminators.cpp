@@ -14,8 +14,6 @@ glm::dvec3 way_to(const ShadowLight& light, glm::dvec3 point) {
   return light.place - point * light.w;
 }
 
-double length_of(glm::dvec3 v) { return std::sqrt(dot(v, v)); }
-
 double longest_edge_m(const Facet& facet) {
   const auto& [a, b, c] = facet.corners;
   return std::max({length_of(b - a), length_of(c - b), length_of(a - c)});

@@ -53,9 +53,8 @@ std::vector<double> spread_over_columns(const std::vector<double>& numbers) {
 }
 
 bool stands_still(const Scene& scene, double from, double to) {
-  const Camera& camera = scene.camera;
   if (from == to) return true;
-  if (camera.orbit_degrees_per_frame != 0.0) return false;
+  if (moves(scene.camera)) return false;
   return std::all_of(scene.objects.begin(), scene.objects.end(), [&](const Object& object) {
     return object_matrix(object, from) == object_matrix(object, to);
   });

@@ -240,13 +240,16 @@ CameraMatrices with_margin(CameraMatrices camera, int width, int height, int mar
 }  // namespace
 
 WarpedViewsBuffer make_warped_views_buffer(const LensViewInput& input, ThreadPool& pool) {
-  return {input.prepared != nullptr ? std::move(*input.prepared)
-                                    : prepare_scene(input.scene, input.profile, pool),
-          {},
-          0,
-          {},
-          {},
-          make_sample_sums(input.pinhole.width, input.pinhole.height)};
+  WarpedViewsBuffer buffer{input.prepared != nullptr
+                               ? std::move(*input.prepared)
+                               : prepare_scene(input.scene, input.profile, pool),
+                           {},
+                           0,
+                           {},
+                           {},
+                           make_sample_sums(input.pinhole.width, input.pinhole.height)};
+  buffer.prepared.stand_ins = input.stand_ins;
+  return buffer;
 }
 
 void draw_sources(WarpedViewsBuffer& buffer, const LensViewInput& input, ThreadPool& pool) {

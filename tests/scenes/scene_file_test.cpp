@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "scenes/draw/frame_matrices.h"
 #include "tests/support/scene_texts.h"
 
 using namespace softfocus;
@@ -179,6 +180,47 @@ TEST_CASE("every shape can be asked for, with nothing but its name") {
   }
 }
 
+TEST_CASE("a camera may be on its way, by frames") {
+  const Scene scene = read(
+      "[camera]\nposition = [[0, 0, 1, 5], [10, 2, 1, 3]]\ntarget = [0, 1, 0]\n"
+      "keyframes = \"linear\"\n");
+  CHECK(scene.camera.position == glm::dvec3{0.0, 1.0, 5.0});
+  CHECK(camera_matrices(scene.camera, 5.0, 64, 64).eye == glm::dvec3{1.0, 1.0, 4.0});
+  CHECK(camera_matrices(scene.camera, 50.0, 64, 64).eye == glm::dvec3{2.0, 1.0, 3.0});
+  CHECK(moves(scene.camera));
+  const Scene looks =
+      read("[camera]\nposition = [0, 0, 3]\ntarget = [[0, 0, 0, 0], [8, 4, 0, 0]]\n");
+  CHECK(target_at(looks.camera, 2.0) == glm::dvec3{1.0, 0.0, 0.0});
+}
+
+TEST_CASE("a camera's way that cannot be is a complaint") {
+  CHECK(complaint("[camera]\nposition = [[5, 0, 1, 5], [5, 2, 1, 3]]\n") ==
+        "a.toml:2: camera.position: has frames that do not increase from 0 on; [[0, 0, 1, 5], "
+        "[90, 0, 1, 2]] would be right");
+  CHECK(contains(complaint("[camera]\nposition = [[0, 0, 1], [5, 2, 1]]\n"), "camera.position"));
+  CHECK(contains(complaint("[camera]\nposition = [[0, 0, 1, 2e7]]\n"), "out of range"));
+  CHECK(contains(complaint("[camera]\nposition = [[0, 0, 0, 5], [9, 0, 0, 0]]\n"
+                           "target = [0, 0, 0]\n"),
+                 "is the camera's position"));
+}
+
+TEST_CASE("an object may be an impostor, within a budget") {
+  const std::string sphere = "shape = \"sphere\"\n";
+  CHECK(read(object(sphere)).objects[0].impostor == ImpostorUse::never);
+  CHECK(read(object(sphere + "impostor = true\n")).objects[0].impostor ==
+        ImpostorUse::wherever_possible);
+  const Scene scene = read("[impostors]\ntolerance_px = 2\nmemory_mb = 64\nmilliseconds = 20\n" +
+                           object(sphere + "impostor = \"auto\"\n"));
+  CHECK(scene.objects[0].impostor == ImpostorUse::where_cheaper);
+  CHECK(scene.impostors.tolerance_px == 2.0);
+  CHECK(scene.impostors.memory_mb == 64.0);
+  CHECK(scene.impostors.milliseconds == 20.0);
+  CHECK(contains(complaint(object(sphere + "impostor = \"never\"\n")),
+                 "object.impostor: is none of true, false and \"auto\""));
+  CHECK(contains(complaint(object(sphere + "impostor = true\nsway = [1, 0, 0]\n")),
+                 "is of an object that moves"));
+}
+
 TEST_CASE("an object stands and moves as its table says") {
   const Scene scene = read(object(R"(
 shape = "cube"
@@ -283,6 +325,15 @@ TEST_CASE("a texture and a model may come from files beside the scene") {
              "[texture.wood]\nfile = \"wood.png\"\n[material.m]\ntexture = \"wood\"\n"
              "[[object]]\nshape = \"model\"\nfile = \"thing.obj\"\nscale = 3\n"
              "[[object]]\nshape = \"model\"\nfile = \"thing.obj\"\nmaterial = \"m\"\n");
+  write_file(directory.file("twice.toml"),
+             "[[object]]\nshape = \"model\"\nfile = \"thing.obj\"\n"
+             "[[object]]\nshape = \"model\"\nfile = \"thing.obj\"\nposition = [1, 2, 3]\n");
+  const Scene twice = read_scene_file(directory.file("twice.toml"));
+  CHECK(twice.meshes.size() == 1);
+  REQUIRE(twice.objects.size() == 2);
+  CHECK(twice.objects[1].mesh == 0);
+  CHECK(twice.objects[1].material == twice.objects[0].material);
+  CHECK(twice.objects[1].position == glm::dvec3{1.0, 2.0, 3.0});
   const Scene scene = read_scene_file(directory.file("s.toml"));
   CHECK(scene.name == "s");
   REQUIRE(scene.objects.size() == 2);

@@ -14,11 +14,8 @@ namespace softfocus {
 namespace {
 
 bool moves(const Scene& scene) {
-  return scene.camera.orbit_degrees_per_frame != 0.0 ||
-         std::any_of(scene.objects.begin(), scene.objects.end(), [](const Object& object) {
-           return object.spin_degrees_per_frame != glm::dvec3{0.0} ||
-                  object.sway != glm::dvec3{0.0};
-         });
+  return moves(scene.camera) || std::any_of(scene.objects.begin(), scene.objects.end(),
+                                            [](const Object& object) { return moves(object); });
 }
 
 // Changes a scene as the subject asks.

@@ -17,10 +17,8 @@ namespace {
 constexpr int kAnimationFrames = 360;
 
 bool is_moving(const Scene& scene) {
-  if (scene.camera.orbit_degrees_per_frame != 0.0) return true;
-  return std::any_of(scene.objects.begin(), scene.objects.end(), [](const Object& object) {
-    return object.spin_degrees_per_frame != glm::dvec3{0.0} || object.sway != glm::dvec3{0.0};
-  });
+  return moves(scene.camera) || std::any_of(scene.objects.begin(), scene.objects.end(),
+                                            [](const Object& object) { return moves(object); });
 }
 
 Json vector_json(const glm::dvec3& v) { return std::vector<double>{v.x, v.y, v.z}; }

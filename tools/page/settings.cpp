@@ -136,6 +136,7 @@ Camera chosen_camera(const Camera& of_scene, const std::optional<CameraChoice>& 
   Camera camera = of_scene;
   if (!choice) return camera;
   camera.position = choice->position;
+  camera.position_keys = camera.target_keys = {};
   camera.target = choice->target;
   camera.fov_y_degrees = choice->fov_y_degrees;
   const glm::dvec3 forwards = camera.target - camera.position;

@@ -133,7 +133,11 @@ constexpr std::array kReliefActions{
                   "--projection",
                   "--box",
                   "--texels",
-                  "--json"}}};
+                  "--json"}},
+    ReliefAction{"walk",
+                 walk_scene,
+                 false,
+                 {"-o", "--scene-path", "--frame", "--size", "--frames", "--every", "--json"}}};
 
 /// An option that another action reads and this one does not.
 void check_read(const CLI::App& parser, const ReliefAction& action) {
@@ -285,11 +289,12 @@ Command add_relief_command(CLI::App& program) {
   add_argument(
       *parser, "ACTION",
       "make a scene's relief; show or warp a relief's file; box: a scene as six reliefs; bench a "
-      "file's warps; turn around a scene as an impostor",
+      "file's warps; turn around a scene as an impostor; walk with a scene's camera among its "
+      "impostors",
       options->action);
   offer(*parser, "ACTION", [] { return names_in(kReliefActions); });
   add_argument(*parser, "INPUT",
-               "A scene or heights for make, a scene for box and turn, else a relief's file",
+               "A scene or heights for make, a scene for box, turn and walk, else a relief's file",
                options->input);
   add_relief_options(*parser, options);
   return {parser, [parser, options] { return run_relief(*parser, *options); }};

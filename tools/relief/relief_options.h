@@ -98,6 +98,7 @@ int warp_view(const ReliefOptions& options);
 int bench_relief(const ReliefOptions& options);
 int turn_impostor(const ReliefOptions& options);
 int turn_octahedral(const ReliefOptions& options);
+int walk_scene(const ReliefOptions& options);
 int turn_box(const ReliefOptions& options);
 int show_box(const ReliefOptions& options);
 

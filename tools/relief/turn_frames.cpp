@@ -24,6 +24,7 @@ Camera turn_camera(const Scene& scene, const ReliefMaker& maker, const ReliefOpt
   Camera camera = scene.camera;
   const glm::dvec3 arm = camera.position - camera.target;
   const double zoomed = 1.0 / options.zoom;
+  camera.position_keys = camera.target_keys = {};
   camera.target = maker.middle;
   camera.position = maker.middle + arm * zoomed;
   const double distance = std::sqrt(dot(arm, arm)) * zoomed;
@@ -36,35 +37,35 @@ Camera turn_camera(const Scene& scene, const ReliefMaker& maker, const ReliefOpt
   return camera;
 }
 
-/// Names by -o, which must have a number.
+}  // namespace
+
 std::optional<NumberedName> frame_names(const ReliefOptions& options, FileFormat& format) {
   if (options.output.empty()) return std::nullopt;
   std::optional<NumberedName> name = numbered_name("-o", options.output);
   const auto by_name = format_by_extension(options.output);
   if (!name || !by_name) {
-    throw UsageError("-o '" + options.output +
-                     "': a turn has many frames; a name such as turn_%04d.png would be right");
+    throw UsageError("-o '" + options.output + "': a " + options.action +
+                     " has many frames; a name such as " + options.action +
+                     "_%04d.png would be right");
   }
   check_writable(name_at(*name, 0));
   format = *by_name;
   return name;
 }
 
-void write_pair(const TurnStage& stage, int frame, const Image& shown) {
-  const Image& redrawn = stage.redrawn;
-  Image pair = make_image(Format::rgba16f, 2 * redrawn.width, redrawn.height);
+void write_pair(const Image& left, const Image& right, const std::filesystem::path& file,
+                FileFormat format) {
+  Image pair = make_image(Format::rgba16f, 2 * left.width, left.height);
   for (int y = 0; y < pair.height; ++y) {
     std::uint16_t* to = row<std::uint16_t>(pair, y).data();
-    const auto left = row<std::uint16_t>(redrawn, y), right = row<std::uint16_t>(shown, y);
-    std::copy(left.begin(), left.end(), to);
-    std::copy(right.begin(), right.end(), to + left.size());
+    const auto from_left = row<std::uint16_t>(left, y), from_right = row<std::uint16_t>(right, y);
+    std::copy(from_left.begin(), from_left.end(), to);
+    std::copy(from_right.begin(), from_right.end(), to + from_left.size());
   }
-  WholeFile file{name_at(*stage.name, frame)};
-  file.write(encode(pair, stage.format));
-  file.commit();
+  WholeFile whole{file};
+  whole.write(encode(pair, format));
+  whole.commit();
 }
-
-}  // namespace
 
 glm::vec4 turn_background(const Scene& scene, const Camera& camera) {
   const glm::vec4 background = clear_colour(scene);
@@ -130,7 +131,7 @@ void measure_frame(TurnStage& stage, int frame, const Image& shown, TurnErrors& 
   const auto pixels = static_cast<double>(drawn.size());
   errors.object_flip.push_back(
       outline.seen == 0 ? 0.0 : measured.whole.flip * pixels / static_cast<double>(outline.seen));
-  if (stage.name) write_pair(stage, frame, shown);
+  if (stage.name) write_pair(redrawn, shown, name_at(*stage.name, frame), stage.format);
 }
 
 void show_frame(TurnStage& stage, int frame, int frames) {

@@ -41,6 +41,13 @@ struct TurnStage {
   std::chrono::steady_clock::time_point shown_at{};
 };
 
+/// Names by -o, which must have a number.
+std::optional<NumberedName> frame_names(const ReliefOptions& options, FileFormat& format);
+
+/// Two pictures side by side.
+void write_pair(const Image& left, const Image& right, const std::filesystem::path& file,
+                FileFormat format);
+
 /// Says, twice a second, which of the frames comes next. Call it where nothing is timed.
 void show_frame(TurnStage& stage, int frame, int frames);
 

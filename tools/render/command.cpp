@@ -16,6 +16,7 @@
 #include "scenes/frame/frame.h"
 #include "scenes/frame/frame_rows.h"
 #include "scenes/load/load_scene.h"
+#include "scenes/relief/impostors/scene_impostors.h"
 #include "scenes/scene.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
@@ -260,10 +261,12 @@ Rendered write_frame(const RenderOptions& options, RenderRecord& record,
   return made;
 }
 
-/// `sequence` is of frames that depend on those before.
+/// `sequence` is of frames that depend on those before. `stand_ins` are kept over frames, or null.
 Rendered make_rendered(const RenderOptions& options, const Scene& scene, double load_ms,
-                       FrameSequence& sequence, Progress& progress, ThreadPool& pool) {
-  const Shot shot = asked_shot(options, scene, sequence);
+                       FrameSequence& sequence, std::shared_ptr<const StandIns> stand_ins,
+                       Progress& progress, ThreadPool& pool) {
+  Shot shot = asked_shot(options, scene, sequence);
+  shot.stand_ins = std::move(stand_ins);
   RenderRecord record{.scene_name = scene.name,
                       .scene_title = scene.title,
                       .triangles = triangle_count(scene),
@@ -296,6 +299,7 @@ Rendered make_rendered(const RenderOptions& options, const Scene& scene, double 
   }
   record.frame = watched_frame(shot, options, record, warnings, progress, pool);
   record.camera.position = record.frame.view.eye;
+  record.camera.target = target_at(scene.camera, shot.frame);
   progress.clear();
   if (options.shard) {
     write_shard(scene, options, record);
@@ -311,7 +315,7 @@ Scene loaded_scene(const RenderOptions& options, Progress& progress, double& ms,
     return load_scene(options.scene, scene_search_path(options.scene_path), &pool);
   });
   progress.clear();
-  settle_shadows(options, scene);
+  settle_scene(options, scene);
   for (std::string& warning : shadow_warnings(scene)) scene.warnings.push_back(std::move(warning));
   print_scene_warnings(scene.warnings, options.verbose);
   if (!options.quiet) {
@@ -340,7 +344,7 @@ int render(const RenderOptions& options) {
         "what join makes softfocus apply");
   }
   FrameSequence sequence = frame_sequence(options);
-  const Rendered made = make_rendered(options, scene, load_ms, sequence, progress, pool);
+  const Rendered made = make_rendered(options, scene, load_ms, sequence, {}, progress, pool);
   if (to_standard_output) write_to_standard_output(made.picture);
   progress.clear();
   for (const std::string& warning : made.warnings) {
@@ -354,10 +358,11 @@ int render(const RenderOptions& options) {
 int render_many(const RenderOptions& options, const CLI::App& parser) {
   Progress progress{options.quiet};
   double load_ms = 0.0;
-  const Scene scene = [&] {
-    ThreadPool pool{options.pool.threads, options.pool.isa};
-    return loaded_scene(options, progress, load_ms, pool);
-  }();
+  std::optional<ThreadPool> pool{std::in_place, options.pool.threads, options.pool.isa};
+  const Scene scene = loaded_scene(options, progress, load_ms, *pool);
+  std::shared_ptr<const StandIns> stand_ins;
+  if (has_impostors(scene)) stand_ins = stand_ins_of(make_scene_impostors(scene, *pool));
+  pool.reset();
   const bool depends = checked_effect_of_frames(options, scene).has_value();
   FrameSequence sequence = frame_sequence(options);
   return render_frames(options, parser, scene, [&](const RenderOptions& frame, FrameRun& run) {
@@ -365,7 +370,7 @@ int render_many(const RenderOptions& options, const CLI::App& parser) {
     // Frames that do not depend on each other are made several at once.
     FrameSequence own = frame_sequence(frame);
     Rendered made =
-        make_rendered(frame, scene, load_ms, depends ? sequence : own, silent, run.pool);
+        make_rendered(frame, scene, load_ms, depends ? sequence : own, stand_ins, silent, run.pool);
     run.picture = std::move(made.picture);
     run.warnings = std::move(made.warnings);
     run.report = std::move(made.report);

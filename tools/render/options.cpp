@@ -76,6 +76,11 @@ void add_scene_options(CLI::App& parser, RenderOptions& options) {
   add_scene_path(parser, options.scene_path);
   add_choice(parser, "--shadows", "Shadows of all lights, in place of what the scene says of each",
              parameter::kShadowKinds, options.shadows);
+  add_choice(
+      parser, "--impostors",
+      "Objects as relief impostors where that costs less, or as geometry (default: as the scene "
+      "says of each)",
+      parameter::kImpostorUses, options.impostors);
   add_map_option(parser, options.map);
   add_light_options(parser, options.lights);
   add_terminator_option(parser, options.lights);
@@ -331,7 +336,10 @@ void check_render_memory(const RenderOptions& options, std::uint64_t each_pixel)
 
 }  // namespace
 
-void settle_shadows(const RenderOptions& options, Scene& scene) {
+void settle_scene(const RenderOptions& options, Scene& scene) {
+  if (options.impostors) {
+    for (Object& object : scene.objects) object.impostor = *options.impostors;
+  }
   if (options.shadows) set_shadows(scene, *options.shadows);
   set_maps(options.map, scene);
   set_lights(options.lights, scene);

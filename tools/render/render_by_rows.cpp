@@ -71,6 +71,7 @@ void render_by_rows(const RenderOptions& options, const Shot& shot, RenderRecord
   record.frame.sampling = frame.sampling;
   record.frame.samples = frame.samples;
   record.camera.position = frame.view.eye;
+  record.camera.target = target_at(shot.scene->camera, shot.frame);
 
   std::optional<CutCircles> cut;
   if (frame.lens && cuts_by_default(options)) cut.emplace(options, *frame.lens, pool);

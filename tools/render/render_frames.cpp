@@ -4,6 +4,7 @@
 
 #include "scenes/draw/frame_matrices.h"
 #include "scenes/load/pipeline_file.h"
+#include "scenes/relief/impostors/scene_impostors.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/platform.h"
 #include "tools/pictures/picture_notes.h"
@@ -102,8 +103,9 @@ int render_frames(const RenderOptions& options, const CLI::App& parser, const Sc
   FrameRunOptions run = run_options(options.sequence, options.output, options.format, options.pool,
                                     options.json, options.verbose);
   run.quiet = options.quiet;
-  // A driver belongs to one thread. Frames that depend on those before come in their order.
-  if (options.gl == nullptr && !depend) {
+  // A driver belongs to one thread, and so do impostors that are kept from frame to frame. Frames
+  // that depend on those before come in their order.
+  if (options.gl == nullptr && !depend && !has_impostors(scene)) {
     run.at_once = frames_at_once(frames.size(), options.pool.threads,
                                  bytes_of_a_frame(options) + bytes_of_textures(scene),
                                  memory_bytes().value_or(0));

@@ -16,8 +16,6 @@ constexpr int kLeastLevelSize = 16;
 /// Half the height of the view, a metre before the camera.
 double half_view(const CameraMatrices& camera) { return 1.0 / std::fabs(camera.eye_to_clip[1][1]); }
 
-double length_of(glm::dvec3 v) { return std::sqrt(dot(v, v)); }
-
 glm::dvec3 middle_of_plane(const ReliefTexture& relief) {
   const ReliefCamera& plane = relief.camera;
   return (plane.origin + plane.a * (0.5 * (relief.width - 1))) +

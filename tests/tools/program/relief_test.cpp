@@ -51,6 +51,48 @@ TEST_CASE("relief: a scene's relief is made, shown and warped") {
   CHECK(hash_image(read_image_file(first).image) == hash_image(read_image_file(second).image));
 }
 
+TEST_CASE("relief walk draws a scene with its impostors and without") {
+  const TemporaryDirectory folder;
+  write_file(folder.file("walk.toml"),
+             "[camera]\nposition = [[0, 0, 1, 6], [10, 1, 1, 6]]\n[material.m]\n"
+             "[[object]]\nshape = \"torus\"\nsegments = 200\nsides = 100\nmaterial = \"m\"\n"
+             "impostor = true\n");
+  const std::string scene = folder.file("walk.toml");
+  const Words words{"relief",
+                    "walk",
+                    scene,
+                    "--frames",
+                    "4",
+                    "--every",
+                    "2",
+                    "--size",
+                    "64x64",
+                    "-o",
+                    folder.file("walk_%d.png")};
+  const ProgramRun run = run_program(words);
+  CHECK(run.err == "");
+  REQUIRE(run.status == 0);
+  CHECK(contains(run.out, "triangles 40000, frames 4, size 64x64"));
+  CHECK(read_image_file(folder.file("walk_2.png")).image.width == 128);
+  Words as_json{words.begin(), words.end() - 2};
+  as_json.push_back("--json");
+  const json found = json::parse(run_program(as_json).out);
+  REQUIRE(found.at("curve").size() == 4);
+  CHECK(found.at("curve")[0].at("renewed") == 1);
+  CHECK(found.at("curve")[0].at("flip") < 0.02);
+  CHECK(found.at("curve")[1].contains("jump"));
+  CHECK(found.at("tenths").size() == 4);
+  CHECK(found.at("impostors").at("most_megabytes") > 0.0);
+
+  const ProgramRun without = run_program(
+      {"relief", "walk", "figures", "--frames", "4", "--every", "4", "--size", "32x32"});
+  REQUIRE(without.status == 0);
+  CHECK(contains(without.err, "no object of 'figures' is an impostor"));
+  const ProgramRun refused = run_program({"relief", "walk", scene, "--tolerance", "4"});
+  CHECK(refused.status == 2);
+  CHECK(contains(refused.err, "--tolerance: relief walk does not read it"));
+}
+
 TEST_CASE("relief bench and turn say what they measured") {
   const TemporaryDirectory folder;
   const std::string relief = relief_by(folder);

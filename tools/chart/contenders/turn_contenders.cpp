@@ -70,6 +70,7 @@ Camera camera_of_turn(const Scene& scene, const ReliefMaker& maker) {
   const glm::dvec3 arm = camera.position - camera.target;
   const double tangent = exact_math::tan_degrees(0.5 * camera.fov_y_degrees);
   const double distance_m = kRoom * maker.radius_m * std::sqrt(1.0 + tangent * tangent) / tangent;
+  camera.position_keys = camera.target_keys = {};
   camera.target = maker.middle;
   camera.position = maker.middle + normalize(arm) * distance_m;
   camera.near_m = 0.5 * (distance_m - maker.radius_m);
