@@ -152,6 +152,9 @@ fov_degrees = 50.0
 near_m = 0.1
 far_m = 150.0
 
+[impostors]
+tolerance_px = 2.0
+
 [lens]
 focal_length_mm = 50.0
 f_number = 2.0
