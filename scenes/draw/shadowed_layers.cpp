@@ -27,17 +27,17 @@ ProjectedShadows without_triangles(const Facets& facets, const ShadowLight& ligh
   return {lit_sides(facets, light), std::vector<std::size_t>(facets.receivers.size() + 1), {}};
 }
 
-void update_volumes(SceneShadows& shadows, std::span<const Light> lights) {
-  const auto has_volumes = [&](std::size_t light) {
-    return lights[light].shadows == ShadowKind::volumes;
-  };
-  shadows.volumes.assign(shadows.lights.size(), {});
-  if (std::none_of(shadows.lights.begin(), shadows.lights.end(), has_volumes)) return;
-  shadows.joined = join_facets(shadows.facets);
-  for (std::size_t i = 0; i < shadows.lights.size(); ++i) {
-    if (!has_volumes(shadows.lights[i])) continue;
-    shadows.volumes[i] = make_shadow_volumes(shadows.facets, shadows.joined,
-                                             shadow_light(lights[shadows.lights[i]]));
+// Of one light, that has come or has moved.
+void place_light(SceneShadows& shadows, std::size_t i, ShadowKind kind, const ShadowLight& light,
+                 ThreadPool& pool) {
+  shadows.placed[i] = light;
+  const bool is_projected = kind == ShadowKind::projected && !shadows.by_rays;
+  shadows.projected[i] = is_projected ? project_by_grid(shadows.facets, light, pool)
+                                      : without_triangles(shadows.facets, light);
+  shadows.maps[i] = {};
+  shadows.volumes[i] = {};
+  if (kind == ShadowKind::volumes) {
+    shadows.volumes[i] = make_shadow_volumes(shadows.facets, shadows.joined, light);
   }
 }
 
@@ -60,26 +60,30 @@ bool has_terminators(std::span<const Light> lights, const SceneShadows& shadows)
 
 void update(SceneShadows& shadows, const Scene& scene, std::span<const Light> lights, double frame,
             ThreadPool& pool) {
+  const std::size_t count = shadows.lights.size();
   const bool has_facets = shadows.frame && (*shadows.frame == frame || !shadows.moves);
-  std::vector<ShadowLight> placed;
-  placed.reserve(shadows.lights.size());
-  for (const std::size_t number : shadows.lights) placed.push_back(shadow_light(lights[number]));
-  if (has_facets && placed == shadows.placed) return;
   if (!has_facets) {
     shadows.facets = scene_facets(scene, frame);
     if (has_terminators(lights, shadows)) shadows.surfaces = curved_surfaces(scene, frame);
+    const bool has_volumes =
+        std::any_of(shadows.lights.begin(), shadows.lights.end(), [&](std::size_t number) {
+          return lights[number].shadows == ShadowKind::volumes;
+        });
+    if (has_volumes) shadows.joined = join_facets(shadows.facets);
+    shadows.placed.clear();
+    shadows.frame = frame;
   }
-  shadows.projected.clear();
-  for (std::size_t i = 0; i < placed.size(); ++i) {
-    const bool is_projected = lights[shadows.lights[i]].shadows == ShadowKind::projected;
-    shadows.projected.push_back(is_projected && !shadows.by_rays
-                                    ? project_by_grid(shadows.facets, placed[i], pool)
-                                    : without_triangles(shadows.facets, placed[i]));
+  const bool is_first = shadows.placed.empty();
+  shadows.placed.resize(count);
+  shadows.projected.resize(count);
+  shadows.maps.resize(count);
+  shadows.volumes.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Light& light = lights[shadows.lights[i]];
+    const ShadowLight placed = shadow_light(light);
+    if (!is_first && placed == shadows.placed[i]) continue;
+    place_light(shadows, i, light.shadows, placed, pool);
   }
-  shadows.placed = std::move(placed);
-  shadows.maps.assign(shadows.lights.size(), {});
-  update_volumes(shadows, lights);
-  shadows.frame = frame;
 }
 
 std::vector<const ProjectedShadows*> pointers_to(const std::vector<ProjectedShadows>& projected) {
