@@ -25,6 +25,15 @@ struct Choice {
   Value value;
 };
 
+/// The word of a value that is among them.
+template <class Choices, class Value>
+constexpr std::string_view word_for(const Choices& choices, const Value& value) {
+  for (const auto& choice : choices) {
+    if (choice.value == value) return choice.name;
+  }
+  return {};
+}
+
 /// NaN is not.
 bool is_allowed(const Parameter& parameter, double value);
 

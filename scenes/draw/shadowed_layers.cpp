@@ -58,34 +58,6 @@ bool has_terminators(std::span<const Light> lights, const SceneShadows& shadows)
   });
 }
 
-void update(SceneShadows& shadows, const Scene& scene, std::span<const Light> lights, double frame,
-            ThreadPool& pool) {
-  const std::size_t count = shadows.lights.size();
-  const bool has_facets = shadows.frame && (*shadows.frame == frame || !shadows.moves);
-  if (!has_facets) {
-    shadows.facets = scene_facets(scene, frame);
-    if (has_terminators(lights, shadows)) shadows.surfaces = curved_surfaces(scene, frame);
-    const bool has_volumes =
-        std::any_of(shadows.lights.begin(), shadows.lights.end(), [&](std::size_t number) {
-          return lights[number].shadows == ShadowKind::volumes;
-        });
-    if (has_volumes) shadows.joined = join_facets(shadows.facets);
-    shadows.placed.clear();
-    shadows.frame = frame;
-  }
-  const bool is_first = shadows.placed.empty();
-  shadows.placed.resize(count);
-  shadows.projected.resize(count);
-  shadows.maps.resize(count);
-  shadows.volumes.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const Light& light = lights[shadows.lights[i]];
-    const ShadowLight placed = shadow_light(light);
-    if (!is_first && placed == shadows.placed[i]) continue;
-    place_light(shadows, i, light.shadows, placed, pool);
-  }
-}
-
 std::vector<const ProjectedShadows*> pointers_to(const std::vector<ProjectedShadows>& projected) {
   std::vector<const ProjectedShadows*> of_lights;
   of_lights.reserve(projected.size());
@@ -408,6 +380,33 @@ std::shared_ptr<SceneShadows> make_scene_shadows(const Scene& scene, const Profi
   return shadows;
 }
 
+void place_shadows(SceneShadows& shadows, const Scene& scene, std::span<const Light> lights,
+                   double frame, ThreadPool& pool) {
+  const std::size_t count = shadows.lights.size();
+  const bool has_facets = shadows.frame && (*shadows.frame == frame || !shadows.moves);
+  if (!has_facets) {
+    shadows.facets = scene_facets(scene, frame);
+    if (has_terminators(lights, shadows)) shadows.surfaces = curved_surfaces(scene, frame);
+    const bool has_volumes = std::any_of(
+        shadows.lights.begin(), shadows.lights.end(),
+        [&](std::size_t number) { return lights[number].shadows == ShadowKind::volumes; });
+    if (has_volumes) shadows.joined = join_facets(shadows.facets);
+    shadows.placed.clear();
+    shadows.frame = frame;
+  }
+  const bool is_first = shadows.placed.empty();
+  shadows.placed.resize(count);
+  shadows.projected.resize(count);
+  shadows.maps.resize(count);
+  shadows.volumes.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Light& light = lights[shadows.lights[i]];
+    const ShadowLight placed = shadow_light(light);
+    if (!is_first && placed == shadows.placed[i]) continue;
+    place_light(shadows, i, light.shadows, placed, pool);
+  }
+}
+
 MaskDraws cut_shadows(const SceneShadows& shadows, const CameraMatrices& camera, int width,
                       int height, ThreadPool& pool) {
   return cut_shadows(shadows.facets, pointers_to(shadows.projected), shadows.seen[0],
@@ -420,7 +419,7 @@ void add_shadows(const PreparedScene& prepared, const CameraMatrices& camera, do
   SceneShadows& shadows = *prepared.shadows;
   const Scene& scene = *prepared.scene;
   const int width = layers[0]->width, height = layers[0]->height;
-  update(shadows, scene, lights, frame, pool);
+  place_shadows(shadows, scene, lights, frame, pool);
   shadows.seen = draw_seen_facets(shadows.numbered, scene, camera, frame, width, height,
                                   layers.size(), pool, behind_before, prepared.hidden);
   draw_masks(shadows, scene, lights, camera, width, height, shadows.pass.profile, pool);

@@ -69,6 +69,11 @@ struct SceneShadows {
 std::shared_ptr<SceneShadows> make_scene_shadows(const Scene& scene, const Profile& profile,
                                                  ThreadPool& pool);
 
+/// Makes shadows ready for lights, which are the scene's or the scene's in other places, at a
+/// frame: add_shadows() does it first.
+void place_shadows(SceneShadows& shadows, const Scene& scene, std::span<const Light> lights,
+                   double frame, ThreadPool& pool);
+
 /// What is drawn of the first layer's shadows, once add_shadows() has drawn it.
 MaskDraws cut_shadows(const SceneShadows& shadows, const CameraMatrices& camera, int width,
                       int height, ThreadPool& pool);

@@ -12,6 +12,7 @@
 #include "scenes/draw/draw_scene.h"
 #include "scenes/draw/frame_matrices.h"
 #include "scenes/draw/object_numbers.h"
+#include "scenes/draw/seen_facets.h"
 #include "scenes/draw/velocity.h"
 #include "scenes/load/pipeline_file.h"
 #include "scenes/relief/impostors/scene_impostors.h"
@@ -84,6 +85,32 @@ Image pinhole_of(const Shot& shot, const FrameParts& parts, ThreadPool& pool) {
   return with_dof_input(parts, {}, shot.profile, {}, {}, [&](const DofInput& input) {
     return apply(*find_method("pinhole"), input, pool);
   });
+}
+
+Image wireframe_of(const Shot& shot, const DrawnFrame& of, const Image& drawn, ThreadPool& pool) {
+  const int width = drawn.width, height = drawn.height;
+  NumberedScene numbered = number_triangles(*shot.scene, shot.profile, pool.isa());
+  const std::vector<SeenFacet> seen =
+      draw_seen_facets(numbered, *shot.scene, of.view, shot.frame, width, height, 1, pool, {})[0];
+  Image result = drawn;
+  const glm::vec4 background = clear_colour(*shot.scene);
+  pool.for_each(height, [&](int y) {
+    const auto facet_at = [&](int x, int row) {
+      const int column = std::clamp(x, 0, width - 1);
+      return seen[static_cast<std::size_t>(std::clamp(row, 0, height - 1)) *
+                      static_cast<std::size_t>(width) +
+                  static_cast<std::size_t>(column)];
+    };
+    for (int x = 0; x < width; ++x) {
+      const SeenFacet own = facet_at(x, y);
+      const bool is_line = own != 0 && (facet_at(x + 1, y) != own || facet_at(x, y + 1) != own ||
+                                        facet_at(x - 1, y) == 0 || facet_at(x, y - 1) == 0);
+      if (is_line) continue;
+      const float depth_m = load_texel<Format::rgba16f>(drawn, x, y).w;
+      store_texel<Format::rgba16f>(result, x, y, {glm::vec3{background}, depth_m}, shot.profile);
+    }
+  });
+  return result;
 }
 
 Image map_of(const Shot& shot, const Image& drawn, const std::optional<UsedLens>& lens) {
@@ -338,7 +365,9 @@ Frame make_picture(const Shot& shot, const DrawnFrame& drawn, const std::optiona
   if (shot.show != Show::image) {
     tell(hooks, FrameStage::filtering);
     frame.picture = shot.show == Show::pinhole ? pinhole_of(shot, drawn.parts, pool)
-                                               : map_of(shot, drawn.parts.picture(), lens);
+                    : shot.show == Show::wireframe
+                        ? wireframe_of(shot, drawn, drawn.parts.picture(), pool)
+                        : map_of(shot, drawn.parts.picture(), lens);
   } else if (shot.shard) {
     tell(hooks, FrameStage::sampling);
     frame.sums = accumulation_sums(views_of(shot, drawn, used, memory, hooks),

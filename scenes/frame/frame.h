@@ -48,7 +48,12 @@ struct MethodChoice {
 MethodChoice find_method_choice(std::string_view name);
 
 /// Which picture is wanted: with depth of field, without, or a map of what it works from.
-enum class Show : std::uint8_t { image, pinhole, coc, depth };
+/// A wireframe has the colours of pixels at the borders of triangles that are seen, and elsewhere
+/// the background.
+enum class Show : std::uint8_t { image, pinhole, coc, depth, wireframe };
+
+/// Neither with depth of field nor without.
+inline bool is_map(Show show) { return show != Show::image && show != Show::pinhole; }
 
 /// The lens as it is asked for.
 struct ShotLens {

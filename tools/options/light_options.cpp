@@ -1,5 +1,8 @@
 #include "tools/options/light_options.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <string>
 #include <string_view>
 
@@ -27,12 +30,65 @@ void set_lights_of(Scene& scene, const std::string& option, LightKind kind, std:
   }
 }
 
+constexpr std::array kTextures{Choice<bool>{"on", true}, Choice<bool>{"off", false}};
+
 bool is_empty(const LightOptions& options) {
   return !options.darkness && !options.points && !options.radius_m && !options.angle_degrees &&
          !options.terminator;
 }
 
 }  // namespace
+
+glm::vec3 parse_towards(const std::string& text) {
+  glm::vec3 towards{0.0f};
+  std::size_t begin = 0;
+  for (int i = 0; i < 3; ++i) {
+    const std::size_t end = i < 2 ? text.find(',', begin) : text.size();
+    if (end == std::string::npos) break;
+    towards[i] = static_cast<float>(parse_number("--light", text.substr(begin, end - begin), -1e6,
+                                                 1e6, "three numbers such as 1,2,3"));
+    begin = end + 1;
+    const float largest =
+        std::max({std::fabs(towards.x), std::fabs(towards.y), std::fabs(towards.z)});
+    if (i == 2 && largest >= 1e-6f) return towards;
+  }
+  throw UsageError("--light '" + text +
+                   "': give three numbers such as 1,2,3, one of them 0.000001 or more from 0");
+}
+
+void add_look_options(CLI::App& parser, SceneLook& look) {
+  add_choice(parser, "--shadows", "Shadows of all lights, in place of what the scene says of each",
+             parameter::kShadowKinds, look.shadows);
+  add_value(parser, "--light", "X,Y,Z",
+            "The first light: towards it, or where it is if it is a point",
+            [&look](const std::string& text) { look.light = parse_towards(text); });
+  add_choice(parser, "--textures", "Surfaces with their textures, or in their own colours",
+             kTextures, look.textures);
+  add_choice(parser, "--impostors",
+             "Objects as relief impostors where that costs less, or as geometry (default: as the "
+             "scene says of each)",
+             parameter::kImpostorUses, look.impostors);
+}
+
+void set_look(const SceneLook& look, Scene& scene) {
+  if (look.light) {
+    if (scene.lights.empty()) throw UsageError("--light: the scene has no light");
+    scene.lights.front().position_or_direction = *look.light;
+  }
+  if (look.shadows) {
+    set_shadows(scene, *look.shadows);
+    if (*look.shadows != ShadowKind::none && scene.lights.size() > kMostShadowLights) {
+      throw UsageError("--shadows: '" + scene.name + "' has " +
+                       count_text(static_cast<int>(scene.lights.size()), "light") + "; up to " +
+                       std::to_string(kMostShadowLights) + " may have shadows");
+    }
+  }
+  if (look.impostors) {
+    for (Object& object : scene.objects) object.impostor = *look.impostors;
+  }
+  if (look.textures) return;
+  for (Material& material : scene.materials) material.texture.reset();
+}
 
 void add_light_options(CLI::App& parser, LightOptions& options) {
   add_parameter(parser, parameter::kShadowDarkness, options.darkness);

@@ -1,7 +1,8 @@
 #pragma once
-// The command line's settings of lights with shadows and of their shadow maps, in place of the
-// scene's.
+// The command line's settings of a scene's look, of lights with shadows and of their shadow maps,
+// in place of the scene's.
 
+#include <glm/vec3.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,6 +12,25 @@
 #include "tools/cli/parser.h"
 
 namespace softfocus {
+
+/// What a scene is drawn with, in place of what it says itself.
+struct SceneLook {
+  std::optional<ShadowKind> shadows{};     ///< of all lights
+  std::optional<ImpostorUse> impostors{};  ///< of all objects
+  std::optional<glm::vec3> light{};        ///< the first light: towards it, or where it is
+  bool textures = true;
+
+  bool operator==(const SceneLook&) const = default;
+};
+
+/// Adds --shadows, --light, --textures and --impostors.
+void add_look_options(CLI::App& parser, SceneLook& look);
+
+/// Throws UsageError for more lights than can have shadows, and where there is no light.
+void set_look(const SceneLook& look, Scene& scene);
+
+/// X,Y,Z that are not all next to 0: squares of these are no subnormals.
+glm::vec3 parse_towards(const std::string& text);
 
 struct LightOptions {
   std::optional<double> darkness;          ///< --shadow-darkness

@@ -144,11 +144,11 @@ Json answer_scenes(Page& /*page*/, const Json& /*request*/) {
   for (const SceneListing& scene : list_scenes(scene_search_path({}))) {
     scenes.push_back({{"name", scene.name}, {"title", scene.title}});
   }
-  return {{"scenes", scenes},
-          {"cases", cases_json()},
-          {"methods", methods_json()},
-          {"encodings", encodings_json()},
-          {"readings", readings_json()}};
+  Json effect_names = Json::array();
+  for (const Effect& effect : effects()) effect_names.push_back(effect.name);
+  return {
+      {"scenes", scenes},          {"effects", effect_names},       {"cases", cases_json()},
+      {"methods", methods_json()}, {"encodings", encodings_json()}, {"readings", readings_json()}};
 }
 
 }  // namespace softfocus

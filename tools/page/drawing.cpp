@@ -5,6 +5,8 @@
 
 #include "dof/lens.h"
 #include "scenes/draw/frame_matrices.h"
+#include "scenes/draw/shadowed_layers.h"
+#include "scenes/relief/impostors/scene_impostors.h"
 #include "tools/cli/errors.h"
 #include "tools/options/effect_options.h"
 #include "tools/page/picture.h"
@@ -16,7 +18,7 @@ namespace {
 /// Effects that make frames from those before are part of the drawing, of a picture alone.
 bool same_drawing(const FrameSettings& a, const FrameSettings& b, bool has_effect_of_frames) {
   return a.size.width == b.size.width && a.size.height == b.size.height && a.preview == b.preview &&
-         a.frame == b.frame && a.camera == b.camera &&
+         a.frame == b.frame && a.camera == b.camera && a.look == b.look && a.effect == b.effect &&
          (!has_effect_of_frames || (a.show == Show::image) == (b.show == Show::image));
 }
 
@@ -84,6 +86,55 @@ ShotLens asked_lens(const Scene& scene, const FrameSettings& settings) {
 
 }  // namespace
 
+namespace {
+
+/// Gives the open scene a look. What was prepared of it stays if a light has moved alone, unless
+/// impostors have its light.
+void set_look(Page& page, const SceneLook& look) {
+  Opened& opened = *page.opened;
+  if (look == opened.look) return;
+  SceneLook moved = look;
+  moved.light = opened.look.light;
+  Scene& scene = opened.scene;
+  scene.lights = opened.lights;
+  scene.materials = opened.materials;
+  scene.objects = opened.objects;
+  set_look(look, scene);
+  if (moved != opened.look || has_impostors(scene)) page.memory = {};
+  opened.look = look;
+}
+
+std::vector<ChosenEffect> asked_effects(const Scene& scene, const FrameSettings& settings) {
+  if (!settings.effect) return scene.effects;
+  if (*settings.effect == "none") return {};
+  return {parse_effect("effect", *settings.effect)};
+}
+
+SceneShadows* shadows_of(Page& page) {
+  return page.memory.prepared ? page.memory.prepared->shadows.get() : nullptr;
+}
+
+void make_shadows_ready(Page& page, const Shot& shot, Drawn& drawn) {
+  SceneShadows* const shadows = shadows_of(page);
+  if (shadows == nullptr) return;
+  const auto start = std::chrono::steady_clock::now();
+  place_shadows(*shadows, *shot.scene, shot.scene->lights, shot.frame, *page.pool);
+  drawn.shadows_ms = milliseconds_since(start);
+}
+
+ShadowCounts counts_of(const SceneShadows& shadows) {
+  ShadowCounts counts;
+  for (const Facet& facet : shadows.facets.facets) counts.casters += facet.casts ? 1 : 0;
+  counts.receivers = shadows.facets.receivers.size();
+  for (const ProjectedShadows& of_light : shadows.projected) {
+    counts.projected += of_light.triangles.size();
+  }
+  for (const ShadowVolumes& of_light : shadows.volumes) counts.volumes += of_light.casters.size();
+  return counts;
+}
+
+}  // namespace
+
 double milliseconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
       .count();
@@ -104,9 +155,10 @@ Shot asked_shot(Page& page, const FrameSettings& settings) {
     shot.lens = asked_lens(scene, settings);
   }
   if (page.opened->stress_case) return shot;
+  set_look(page, settings.look);
   scene.camera = chosen_camera(page.opened->camera, settings.camera);
   if (settings.show != Show::image) return shot;
-  shot.effects = scene.effects;
+  shot.effects = asked_effects(scene, settings);
   if (settings.method.has_shutter()) shot.sampling.shutter_frames = scene.camera.shutter_frames;
   const auto effect = effect_of_frames(shot.effects, "the scene '" + page.opened->source + "'");
   if (effect && settings.method.filter == nullptr) {
@@ -119,7 +171,7 @@ Shot asked_shot(Page& page, const FrameSettings& settings) {
 
 std::shared_ptr<const Drawn> drawn_picture(Page& page, const FrameSettings& settings) {
   const Shot shot = asked_shot(page, settings);
-  const std::vector<ChosenEffect>& effects = page.opened->scene.effects;
+  const std::vector<ChosenEffect> effects = asked_effects(page.opened->scene, settings);
   const bool has_effect_of_frames = !effects.empty() && is_of_frames(*effects.front().effect);
   for (std::size_t i = 0; i < page.drawn.size(); ++i) {
     if (page.drawn[i] && same_drawing(page.drawn[i]->settings, settings, has_effect_of_frames)) {
@@ -137,9 +189,11 @@ std::shared_ptr<const Drawn> drawn_picture(Page& page, const FrameSettings& sett
     drawn->camera = shot.scene->camera;
     Shot for_any_lens = shot;
     for_any_lens.lens.reset();
+    make_shadows_ready(page, for_any_lens, *drawn);
     draw_shot(for_any_lens, page.memory, drawn->frame, *page.pool);
   }
   drawn->ms = milliseconds_since(start);
+  if (const SceneShadows* shadows = shadows_of(page)) drawn->shadows = counts_of(*shadows);
   std::rotate(page.drawn.begin(), page.drawn.end() - 1, page.drawn.end());
   page.drawn[0] = drawn;
   return drawn;

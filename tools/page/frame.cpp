@@ -67,6 +67,12 @@ Json answer_frame(Page& page, const Json& request) {
              {"draw_ms", drawn.ms},
              {"filter_ms", shown.filter_ms},
              {"command", command_text(*page.opened, settings)}};
+  if (drawn.shadows) {
+    reply["shadows"] = {
+        {"triangles", triangle_count(*drawn.scene)}, {"casters", drawn.shadows->casters},
+        {"receivers", drawn.shadows->receivers},     {"projected", drawn.shadows->projected},
+        {"volumes", drawn.shadows->volumes},         {"ms", drawn.shadows_ms}};
+  }
   if (is_picture) {
     add_refocus_figures(reply, shown);
   } else if (shown.lens) {

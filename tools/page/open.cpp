@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "scenes/load/load_scene.h"
+#include "scenes/parameters.h"
+#include "scenes/relief/impostors/scene_impostors.h"
 #include "tools/cli/errors.h"
 #include "tools/page/picture.h"
 #include "tools/page/requests.h"
@@ -51,7 +53,11 @@ std::unique_ptr<Opened> opened_scene(const std::string& source) {
   auto opened = std::make_unique<Opened>();
   opened->source = source;
   opened->scene = load_scene(source, scene_search_path({}));
-  opened->camera = opened->scene.camera;
+  const Scene& scene = opened->scene;
+  opened->camera = scene.camera;
+  opened->lights = scene.lights;
+  opened->materials = scene.materials;
+  opened->objects = scene.objects;
   return opened;
 }
 
@@ -67,6 +73,25 @@ float case_radius(const Opened& opened, ThreadPool& pool) {
   constexpr int kUsualSide = 512;
   const StressTrial trial = opened.stress_case->make(opened.severity, kUsualSide, pool);
   return trial.frames.front().settings.max_coc_px;
+}
+
+/// What a frame's look can change.
+Json look_json(const Scene& scene) {
+  const bool has_light = !scene.lights.empty();
+  const bool has_textures =
+      std::any_of(scene.materials.begin(), scene.materials.end(),
+                  [](const Material& material) { return material.texture.has_value(); });
+  Json look{{"light", nullptr},
+            {"light_kind", nullptr},
+            {"shadows", nullptr},
+            {"textures", has_textures},
+            {"impostors", has_impostors(scene)}};
+  if (!has_light) return look;
+  const Light& light = scene.lights.front();
+  look["light"] = vector_json(glm::dvec3{light.position_or_direction});
+  look["light_kind"] = std::string{word_for(parameter::kLightKinds, light.kind)};
+  look["shadows"] = std::string{word_for(parameter::kShadowKinds, light.shadows)};
+  return look;
 }
 
 Json warnings_json(const Scene& scene) {
@@ -109,6 +134,7 @@ Json answer_open(Page& page, const Json& request) {
                {"near_m", camera.near_m},
                {"far_m", camera.far_m}}},
              {"lens", lens_json(scene.lens, camera.fov_y_degrees)},
+             {"look", look_json(scene)},
              {"autofocus", false}};
   if (is_case) {
     reply["lens"]["max_coc_px"] = case_radius(*opened, *page.pool);

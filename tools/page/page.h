@@ -30,9 +30,20 @@ struct Opened {
   Scene scene;         ///< of a case: empty but for the camera and the lens that stand for it; of a
                        ///< picture: its title alone
   Camera camera;       ///< the scene's own; the scene has that of the last frame
+  /// What a look changes, as the scene has it itself; the scene has the look of the last frame.
+  std::vector<Light> lights{};
+  std::vector<Material> materials{};
+  std::vector<Object> objects{};
+  SceneLook look{};
   std::optional<StressCase> stress_case;
   double severity = 0.0;
   std::shared_ptr<OpenedPicture> picture;
+};
+
+/// Of a scene's triangles: those that cast, those on which shadows can fall, and of all lights the
+/// projected triangles, or the casters that have volumes.
+struct ShadowCounts {
+  std::size_t casters = 0, receivers = 0, projected = 0, volumes = 0;
 };
 
 /// A sharp picture, and what was drawn.
@@ -44,6 +55,8 @@ struct Drawn {
   const StressFrame* trial_frame = nullptr;
   const Scene* scene = nullptr;  ///< null for a case that is made as a picture
   double ms = 0.0;
+  double shadows_ms = 0.0;  ///< of them: shadows made ready for lights that moved
+  std::optional<ShadowCounts> shadows{};
 
   const Image& picture() const { return frame.parts.picture(); }
 };

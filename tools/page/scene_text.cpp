@@ -7,6 +7,7 @@
 
 #include "scenes/files/file_bytes.h"
 #include "scenes/load/load_scene.h"
+#include "scenes/parameters.h"
 #include "tools/cli/errors.h"
 #include "tools/page/picture.h"
 #include "tools/render/performance_report.h"
@@ -136,7 +137,10 @@ std::string scene_text(const Opened& opened, const ShownFrame& shown) {
   std::string text = is_model(opened.source)
                          ? model_text(opened)
                          : read_file_bytes(opened.scene.files.back(), kLargestText);
-  text = with_section(text, "camera", camera_lines(shown.drawn->camera));
+  // A camera's way stays in the file.
+  if (shown.settings.camera || is_model(opened.source)) {
+    text = with_section(text, "camera", camera_lines(shown.drawn->camera));
+  }
   return shown.lens ? with_section(text, "lens", lens_lines(*shown.lens)) : text;
 }
 
@@ -158,7 +162,20 @@ Json command_text(const Opened& opened, const FrameSettings& settings) {
                                                       : number);
   };
   if (settings.frame != 0.0) add(" --frame ", std::optional{settings.frame});
+  const SceneLook& look = settings.look;
+  if (look.shadows)
+    text += " --shadows " + std::string{word_for(parameter::kShadowKinds, *look.shadows)};
+  if (look.light) {
+    const auto number = [](float v) { return json_text(static_cast<double>(v)); };
+    text += " --light " + number(look.light->x) + "," + number(look.light->y) + "," +
+            number(look.light->z);
+  }
+  if (!look.textures) text += " --textures off";
+  if (look.impostors) {
+    text += " --impostors " + std::string{word_for(parameter::kImpostorUses, *look.impostors)};
+  }
   const bool is_image = settings.show == Show::image;
+  if (is_image && settings.effect) text += " --effect " + *settings.effect;
   text += is_image ? " --method " + std::string{settings.method.name()}
                    : " --show " + std::string{name_of(settings.show)};
   if (is_image && filter != nullptr) text += " --multisample 1";

@@ -9,6 +9,7 @@
 #include "raster/numbers/vector_math.h"
 #include "scenes/parameters.h"
 #include "tools/cli/errors.h"
+#include "tools/options/effect_options.h"
 
 namespace softfocus {
 namespace {
@@ -67,6 +68,37 @@ Show read_show(const std::string& name) {
   throw UsageError("show '" + name + "': there are " + names_of(kShows));
 }
 
+template <class Choices>
+auto read_choice(const Json& value, std::string_view name, const Choices& choices) {
+  for (const auto& choice : choices) {
+    if (choice.name == value.text()) return choice.value;
+  }
+  throw UsageError(std::string{name} + " '" + value.text() + "': there are " + names_of(choices));
+}
+
+void read_look(const Json& request, FrameSettings& settings) {
+  SceneLook& look = settings.look;
+  if (const Json* shadows = given(request, "shadows")) {
+    look.shadows = read_choice(*shadows, "shadows", parameter::kShadowKinds);
+  }
+  if (const Json* impostors = given(request, "impostors")) {
+    look.impostors = read_choice(*impostors, "impostors", parameter::kImpostorUses);
+  }
+  if (const Json* light = given(request, "light")) {
+    const auto numbers =
+        checked_numbers(*light, "light", 3, parameter::kPlace.least, parameter::kPlace.most);
+    look.light = glm::vec3{numbers[0], numbers[1], numbers[2]};
+    if (dot(*look.light, *look.light) < 1e-12f) {
+      throw UsageError("light: it points nowhere; give three numbers, one of them not 0");
+    }
+  }
+  if (const Json* textures = given(request, "textures")) look.textures = textures->boolean();
+  if (const Json* effect = given(request, "effect")) {
+    settings.effect = effect->text();
+    if (*settings.effect != "none") parse_effect("effect", *settings.effect);
+  }
+}
+
 void read_focus(const Json& focus, FrameSettings& settings) {
   if (const Json* at = focus.find("at")) {
     const auto numbers = checked_numbers(*at, "focus.at", 2, 0.0, 1.0);
@@ -106,6 +138,7 @@ FrameSettings read_frame_settings(const Json& request) {
     settings.frame = checked_number(*time, kPageTime);
   }
   if (const Json* camera = given(request, "camera")) settings.camera = read_camera(*camera);
+  read_look(request, settings);
   if (const Json* show = given(request, "show")) settings.show = read_show(show->text());
   if (const Json* dof = given(request, "dof"); dof != nullptr && !dof->boolean()) {
     if (settings.show == Show::image) settings.show = Show::pinhole;

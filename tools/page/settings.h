@@ -11,6 +11,7 @@
 #include "tools/cli/option_values.h"
 #include "tools/files/json.h"
 #include "tools/options/lens_options.h"
+#include "tools/options/light_options.h"
 #include "tools/options/method_options.h"
 #include "tools/render/options.h"
 
@@ -36,6 +37,8 @@ struct FrameSettings {
   int preview = 1;             ///< what sizes and radii were divided by
   double frame = 0.0;          ///< time of the animation
   std::optional<CameraChoice> camera;
+  SceneLook look;
+  std::optional<std::string> effect;  ///< in place of the scene's: its name, or "none"
   Show show = Show::image;
   MethodChoice method{.filter = find_method("two-pass")};
   LensOptions lens;

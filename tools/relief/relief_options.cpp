@@ -17,6 +17,7 @@
 #include "scenes/relief/impostors/octahedral_atlas.h"
 #include "tools/cli/errors.h"
 #include "tools/files/findings.h"
+#include "tools/options/light_options.h"
 #include "tools/options/parameter_options.h"
 #include "tools/pictures/picture_file.h"
 
@@ -33,24 +34,6 @@ constexpr std::array kTurnSchedules{Choice<TurnSchedule>{"serial", TurnSchedule:
                                     Choice<TurnSchedule>{"split", TurnSchedule::split},
                                     Choice<TurnSchedule>{"slices", TurnSchedule::slices},
                                     Choice<TurnSchedule>{"own-thread", TurnSchedule::own_thread}};
-
-/// X,Y,Z that are not all next to 0: squares of these are no subnormals.
-glm::vec3 parse_towards(const std::string& text) {
-  glm::vec3 towards{0.0f};
-  std::size_t begin = 0;
-  for (int i = 0; i < 3; ++i) {
-    const std::size_t end = i < 2 ? text.find(',', begin) : text.size();
-    if (end == std::string::npos) break;
-    towards[i] = static_cast<float>(parse_number("--light", text.substr(begin, end - begin), -1e6,
-                                                 1e6, "three numbers such as 1,2,3"));
-    begin = end + 1;
-    const float largest =
-        std::max({std::fabs(towards.x), std::fabs(towards.y), std::fabs(towards.z)});
-    if (i == 2 && largest >= 1e-6f) return towards;
-  }
-  throw UsageError("--light '" + text +
-                   "': give three numbers such as 1,2,3, one of them 0.000001 or more from 0");
-}
 
 }  // namespace
 

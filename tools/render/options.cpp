@@ -74,13 +74,7 @@ void add_scene_options(CLI::App& parser, RenderOptions& options) {
   begin_group(parser, "Scene");
   add_frame(parser, options.frame);
   add_scene_path(parser, options.scene_path);
-  add_choice(parser, "--shadows", "Shadows of all lights, in place of what the scene says of each",
-             parameter::kShadowKinds, options.shadows);
-  add_choice(
-      parser, "--impostors",
-      "Objects as relief impostors where that costs less, or as geometry (default: as the scene "
-      "says of each)",
-      parameter::kImpostorUses, options.impostors);
+  add_look_options(parser, options.look);
   add_map_option(parser, options.map);
   add_light_options(parser, options.lights);
   add_terminator_option(parser, options.lights);
@@ -153,7 +147,7 @@ void check_layers(const RenderOptions& options) {
 
 void check_depth_output(const RenderOptions& options) {
   if (!options.depth_output) return;
-  if (options.show == Show::coc || options.show == Show::depth) {
+  if (is_map(options.show)) {
     throw UsageError("--depth-output: give it with --show image or pinhole");
   }
   if (is_same_file(*options.depth_output, options.output) ||
@@ -194,7 +188,7 @@ void check_gl_options(const RenderOptions& options, const CLI::App& parser) {
 
 void check_supersample(const RenderOptions& options) {
   if (options.supersample == 1) return;
-  if (options.show == Show::coc || options.show == Show::depth) {
+  if (is_map(options.show)) {
     throw UsageError(
         "--supersample: a map of circles or depths has no mean; give --show image or "
         "pinhole");
@@ -227,7 +221,7 @@ void check_supersample(const RenderOptions& options) {
 /// Why a pixel has one sample, in words that go behind the option's name; empty if it may have
 /// several.
 std::string why_one_sample(const RenderOptions& options) {
-  if (options.show == Show::coc || options.show == Show::depth) {
+  if (is_map(options.show)) {
     return ": a map shows one surface a pixel; give --show image or pinhole";
   }
   if (options.show == Show::pinhole && options.layers.value_or(1) > 1) {
@@ -337,18 +331,10 @@ void check_render_memory(const RenderOptions& options, std::uint64_t each_pixel)
 }  // namespace
 
 void settle_scene(const RenderOptions& options, Scene& scene) {
-  if (options.impostors) {
-    for (Object& object : scene.objects) object.impostor = *options.impostors;
-  }
-  if (options.shadows) set_shadows(scene, *options.shadows);
+  set_look(options.look, scene);
   set_maps(options.map, scene);
   set_lights(options.lights, scene);
   if (!has_shadows(scene)) return;
-  if (options.shadows && scene.lights.size() > kMostShadowLights) {
-    throw UsageError("--shadows: '" + options.scene + "' has " +
-                     count_text(static_cast<int>(scene.lights.size()), "light") + "; up to " +
-                     std::to_string(kMostShadowLights) + " may have shadows");
-  }
   const std::string_view method = options.method.name();
   const bool is_without = method == "ray-traced" || method == "surface-splatting";
   if (options.gl == nullptr && !(is_without && options.show == Show::image)) return;
@@ -447,8 +433,7 @@ void complete(RenderOptions& options, const CLI::App& parser) {
   if (options.shard) check_shard_count(*options.shard, options.sampling.samples);
   check_supersample(options);
   settle_samples(options, parser);
-  if (!all_effects(options.effects).empty() &&
-      (options.show == Show::coc || options.show == Show::depth)) {
+  if (!all_effects(options.effects).empty() && is_map(options.show)) {
     throw UsageError(
         "--effect: a map of circles or depths is no picture; give --show image or pinhole");
   }

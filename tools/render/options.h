@@ -25,7 +25,8 @@ namespace softfocus {
 
 inline constexpr std::array kShows{
     Choice<Show>{"image", Show::image}, Choice<Show>{"pinhole", Show::pinhole},
-    Choice<Show>{"coc", Show::coc}, Choice<Show>{"depth", Show::depth}};
+    Choice<Show>{"coc", Show::coc}, Choice<Show>{"depth", Show::depth},
+    Choice<Show>{"wireframe", Show::wireframe}};
 
 struct RenderOptions {
   std::string scene;
@@ -38,8 +39,7 @@ struct RenderOptions {
   int samples = 4;        ///< of a pixel; complete() makes it 1 where options leave edges no place
   bool samples_are_given = false;
   double frame = 0.0;
-  std::optional<ShadowKind> shadows;     ///< of all lights, in place of what the scene says
-  std::optional<ImpostorUse> impostors;  ///< of all objects, in place of what the scene says
+  SceneLook look;  ///< in place of what the scene says
   MapOptions map;
   LightOptions lights;
   SequenceOptions sequence;  ///< of many pictures
@@ -87,9 +87,8 @@ void add_render_options(CLI::App& parser, RenderOptions& options);
 /// other or do not fit together, and settles the format.
 void complete(RenderOptions& options, const CLI::App& parser);
 
-/// Gives the scene's lights the shadows of --shadows and what else is said of lights, and its
-/// objects --impostors. Throws UsageError for too many lights, and for a way to draw that has no
-/// shadows.
+/// Gives the scene its look, and its lights what else is said of them. Throws UsageError for too
+/// many lights, and for a way to draw that has no shadows.
 void settle_scene(const RenderOptions& options, Scene& scene);
 
 /// Throws UsageError if there is not the memory for the whole picture. complete() leaves it to

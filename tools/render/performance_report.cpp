@@ -133,6 +133,7 @@ std::string_view name_of(Show show) {
     case Show::pinhole: return "pinhole";
     case Show::coc: return "coc";
     case Show::depth: return "depth";
+    case Show::wireframe: return "wireframe";
   }
   return "";
 }

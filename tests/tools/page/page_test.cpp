@@ -174,6 +174,41 @@ TEST_CASE("a command repeats the frame, or there is none") {
   CHECK(command_of(moved).is_null());
 }
 
+TEST_CASE("a frame's look: its light, shadows, textures, effect, and as a wireframe") {
+  Page page;
+  const Json opened = ask_well(page, R"({"do":"open","scene":"cube-room"})");
+  const Json& look = opened.at("look");
+  CHECK(look.at("light").values().size() == 3);
+  CHECK(look.at("light_kind").text() == "point");
+  CHECK(look.at("textures").boolean());
+  CHECK_FALSE(look.at("impostors").boolean());
+  const std::string size = R"("size":[48,32])";
+  const std::string plain = hash_of(page, size);
+  const auto with = [&](const std::string& settings) { return hash_of(page, size + settings); };
+  const std::string shadows = with(R"(,"shadows":"volumes")");
+  CHECK(shadows != plain);
+  CHECK(with(R"(,"textures":false)") != plain);
+  CHECK(with(R"(,"effect":"sharpen")") != plain);
+  CHECK(with(R"(,"show":"wireframe")") != plain);
+  const std::string moved = with(R"(,"shadows":"volumes","light":[1,2,1])");
+  CHECK(moved != shadows);
+  const Json counts =
+      ask_well(page, R"({"do":"frame",)" + size + R"(,"shadows":"volumes","light":[1.5,2,1]})")
+          .at("shadows");
+  CHECK(counts.at("triangles").integer() == opened.at("triangles").integer());
+  CHECK(counts.at("casters").integer() > 0);
+  CHECK(counts.at("volumes").integer() > 0);
+  CHECK(counts.at("projected").integer() == 0);
+  // In any order, the same.
+  CHECK(with(R"(,"shadows":"volumes","light":[1,2,1])") == moved);
+  CHECK(with("") == plain);
+  for (const char* const wrong : {R"("shadows":"soft")", R"("light":[0,0,0])", R"("light":[1,2])",
+                                  R"("effect":"bloo")", R"("impostors":"on")"}) {
+    CAPTURE(wrong);
+    CHECK(ask(page, R"({"do":"frame",)" + std::string{wrong} + "}").find("error") != nullptr);
+  }
+}
+
 TEST_CASE("every scene's frame has the picture_hash of the page's command" *
           doctest::test_suite("long")) {
   const TemporaryDirectory folder;
@@ -216,6 +251,11 @@ TEST_CASE("every scene's frame has the picture_hash of the page's command" *
   }
   check(R"("show":"coc","coc_scale":4)");
   check(R"("show":"depth")");
+  check(R"("show":"wireframe")");
+  open(page, "cube-room");
+  check(R"("shadows":"projected","light":[0.25,2,1.5],"textures":false)");
+  check(R"("shadows":"volumes","effect":"gaussian:sigma=1","impostors":"auto")");
+  open(page, "glass");
   check(R"("dof":false)");
   const std::string camera =
       R"(,"camera":{"position_m":[1,1.5,4],"target_m":[0,0.5,0],"fov_y_degrees":30})";

@@ -127,7 +127,8 @@ TEST_CASE(
   CHECK(completed(share, {"render", "--method", "=", "accum"}) == Words{"accumulation"});
   CHECK(has(completed(share, {"render", "--method", "="}), "two-pass"));
   CHECK(has(completed(share, {"render", "--profile", ""}), "llvmpipe"));
-  CHECK(completed(share, {"render", "--show", ""}) == Words{"image", "pinhole", "coc", "depth"});
+  CHECK(completed(share, {"render", "--show", ""}) ==
+        Words{"image", "pinhole", "coc", "depth", "wireframe"});
   CHECK(completed(share, {"render", "figu"}) == Words{"figures"});
   CHECK(completed(share, {"render", "figures", "-o", ""}).empty());
   CHECK(completed(share, {"render", "figures", "--", "--f-n"}).empty());

@@ -34,6 +34,11 @@ export function orbited(camera, right, up) {
   return tidy({ ...camera, position_m: plus(camera.target_m, moved) });
 }
 
+/** A light's place or direction turned about `middle`; to the right as the camera sees it. */
+export function turned_light(light, middle, right, up) {
+  return orbited({ position_m: light, target_m: middle }, -right, up).position_m;
+}
+
 /** Nearer to the target for a factor below 1. The target stays. */
 export function dollied(camera, factor) {
   const arm = minus(camera.position_m, camera.target_m);

@@ -4,7 +4,7 @@ import { by_id, element } from "./dom.js";
 import { make_number } from "./numbers.js";
 import { is_own_method } from "./link.js";
 import { kStops, locked_fov_degrees, nearest_stop } from "./lens/photographer.js";
-import { kSizes, lens_keys, parameters, sensors } from "./state.js";
+import { kShadows, kSizes, lens_keys, parameters, sensors } from "./state.js";
 
 function checked_of(name) {
   return document.querySelector(`input[name="${name}"]:checked`)?.value;
@@ -19,9 +19,10 @@ function check(name, value) {
 /**
  * `camera()` is the camera in use or null, `move(camera)` sets another; `focus_m()` is the distance
  * in focus and `max_coc()` the largest circle, as the last frame told them where the state leaves
- * them open; `object_m()` the diagram's object.
+ * them open; `object_m()` the diagram's object; `scene_look()` what the open scene has of a look, or
+ * null.
  */
-export function make_controls({ store, camera, move, focus_m, max_coc, object_m }) {
+export function make_controls({ store, camera, move, focus_m, max_coc, object_m, scene_look }) {
   let methods = [];
   const side = (patch) => store.change_side(patch);
   const numbers = {};
@@ -93,6 +94,33 @@ export function make_controls({ store, camera, move, focus_m, max_coc, object_m 
   on_change("side-part", () => store.change({ editing: Number(checked_of("editing")) }));
   by_id("focus-centre").addEventListener("click", () => side({ focus: { at: [0.5, 0.5] } }));
 
+  const look = (patch) => store.change({ look: { ...store.get().look, ...patch } });
+  on_change("shadows", ({ value }) => look({ shadows: value || null }));
+  on_change("textures", ({ checked }) => look({ textures: checked }));
+  on_change("wireframe", ({ checked }) => store.change({ show: checked ? "wireframe" : "image" }));
+  on_change("impostors", ({ checked }) => look({ impostors: checked ? null : "off" }));
+  on_change("effect", ({ value }) => look({ effect: value || null }));
+  by_id("light-home").addEventListener("click", () => look({ light: null }));
+
+  function update_look(state) {
+    const has = scene_look();
+    const now = state.look;
+    by_id("look-part").hidden = !has;
+    by_id("shadows").value = now.shadows ?? "";
+    by_id("shadows").disabled = by_id("light-drag").disabled = !has?.light;
+    by_id("light-home").disabled = !now.light;
+    by_id("textures").checked = now.textures;
+    by_id("textures").disabled = !has?.textures;
+    by_id("wireframe").checked = state.show === "wireframe";
+    by_id("impostors").checked = now.impostors !== "off";
+    by_id("impostors-part").hidden = !has?.impostors;
+    const effect = by_id("effect");
+    if (now.effect && ![...effect.options].some(({ value }) => value === now.effect)) {
+      effect.append(element("option", {}, now.effect));
+    }
+    effect.value = now.effect ?? "";
+  }
+
   function photo(patch) {
     const next = { ...store.get().photo, ...patch };
     store.change({ photo: next });
@@ -140,6 +168,7 @@ export function make_controls({ store, camera, move, focus_m, max_coc, object_m 
     by_id("stop").value = String(nearest_stop(now.f_number));
     check("size", state.size.join("x"));
     check("show", state.show);
+    update_look(state);
     const locked = locked_fov_degrees(state, { ...now, focus_m: focus_m() }) !== null;
     for (const input of by_id("fov-part").querySelectorAll("input")) {
       input.disabled = locked || !camera();
@@ -160,6 +189,15 @@ export function make_controls({ store, camera, move, focus_m, max_coc, object_m 
       }
       const at = kStops.indexOf(nearest_stop(store.side().f_number));
       side({ f_number: kStops[Math.min(kStops.length - 1, Math.max(0, at + steps))] });
+    },
+    change_look: look,
+    next_shadows() {
+      const { shadows } = store.get().look;
+      const at = kShadows.indexOf(shadows ?? scene_look()?.shadows ?? "none");
+      if (scene_look()?.light) look({ shadows: kShadows[(at + 1) % kShadows.length] });
+    },
+    set_effects(names) {
+      by_id("effect").append(...names.map((name) => element("option", {}, name)));
     },
     next_size() {
       if (store.get().picture) return;  // which has a size of its own

@@ -2,7 +2,7 @@
 // digits, so that the same picture comes back, to the bit. What cannot be read is left at its
 // default, so an old link still opens.
 
-import { first_side, first_state, kShows, lens_keys } from "./state.js";
+import { first_side, first_state, kShadows, kShows, lens_keys } from "./state.js";
 
 const kShortKeys = {
   method: "method", f: "focal_length_mm", N: "f_number", max: "max_coc_px", scale: "coc_scale",
@@ -86,6 +86,12 @@ export function link_of(state) {
     const { position_m, target_m, fov_y_degrees } = state.camera;
     pairs.push(["camera", [...position_m, ...target_m, fov_y_degrees].join(",")]);
   }
+  const { light, shadows, textures, impostors, effect } = state.look;
+  if (light) pairs.push(["light", light.join(",")]);
+  if (shadows) pairs.push(["shadows", shadows]);
+  if (!textures) pairs.push(["textures", "0"]);
+  if (impostors) pairs.push(["impostors", impostors]);
+  if (effect) pairs.push(["effect", effect]);
   if (state.photo.on) {
     pairs.push(["sensor", state.photo.sensor], ["lock", state.photo.lock ? "1" : "0"]);
   }
@@ -163,6 +169,13 @@ export function with_link(state, words) {
     read.camera = { position_m: camera.slice(0, 3), target_m: camera.slice(3, 6),
                     fov_y_degrees: camera[6] };
   }
+  read.look = {
+    light: numbers_of(words.get("light") ?? "", 3),
+    shadows: kShadows.includes(words.get("shadows")) ? words.get("shadows") : null,
+    textures: words.get("textures") !== "0",
+    impostors: ["auto", "off"].includes(words.get("impostors")) ? words.get("impostors") : null,
+    effect: words.get("effect") ?? null,
+  };
   if (words.has("sensor")) {
     read.photo = { on: true, sensor: words.get("sensor"), lock: words.get("lock") === "1" };
   }

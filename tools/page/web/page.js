@@ -2,6 +2,7 @@
 // pointer and link change it, and everything shown follows from it and from the last frame.
 
 import { make_cases } from "./panels/cases.js";
+import { turned_light } from "./camera.js";
 import { start_compare_view } from "./panels/compare_view.js";
 import { make_controls } from "./controls.js";
 import { announce, by_id, copy_text, element, show_error } from "./dom.js";
@@ -59,7 +60,28 @@ const move = (next) => store.change({ camera: next });
 
 const view = start_compare_view(store);
 const lens_view = start_lens_view(store);
-const controls = make_controls({ store, camera, move, focus_m, max_coc, object_m });
+const scene_look = () => (opened && !store.get().failure && !store.get().picture
+    ? opened.look ?? null : null);
+const controls = make_controls({ store, camera, move, focus_m, max_coc, object_m, scene_look });
+
+/** Turns the light, if dragging is to move it. A point's light goes around what the camera sees. */
+function turn_light(right, up) {
+  const has = scene_look();
+  if (!by_id("light-drag").checked || !has?.light) return false;
+  const middle = has.light_kind === "point" ? camera().target_m : [0, 0, 0];
+  const light = store.get().look.light ?? has.light;
+  controls.change_look({ light: turned_light(light, middle, right, up) });
+  return true;
+}
+
+const counted = (number) => number.toLocaleString("en");
+function show_shadow_counts({ shadows }) {
+  by_id("shadow-counts").textContent = shadows
+    ? `${counted(shadows.triangles)} triangles, ${counted(shadows.casters)} casters, ` +
+      `${counted(shadows.receivers)} receivers, ${counted(shadows.projected)} projected triangles, ` +
+      `${counted(shadows.volumes)} casters of volumes; ${ms_text(shadows.ms)} ms for lights that moved`
+    : "";
+}
 const frames = make_frames({
   engine, store,
   moving: () => playing,
@@ -182,6 +204,7 @@ function on_frame(reply, coarse, state, wall_ms) {
   document.title = `${fps} fps · ${ms_text(mean_ms)} ms · softfocus`;
   if (reply.focus_m && !coarse) keep_known(reply, state.editing);
   show_hash(reply, state, state.sides[state.editing], listing);
+  show_shadow_counts(reply);
   if (playing) {
     setTimeout(() => { if (playing) step(); }, Math.max(0, kFrameMs - wall_ms));
   } else if (!coarse && reply.hash === null) {
@@ -386,7 +409,7 @@ async function point_at(place) {
 }
 
 const pointer = start_pointer(by_id("picture"), {
-  camera, move, point_at,
+  camera, move, turn_light, point_at,
   focus_at: (at) => store.change_side({ focus: { at: at.map((part) => Number(part.toFixed(4))) } }),
   focus_place: () => store.side().focus.at ?? null,
 });
@@ -398,6 +421,10 @@ start_keys({
   commands: [
     { keys: ["b"], words: "Depth of field on and off", run: () => store.change_side({ dof: !store.side().dof }) },
     { keys: ["m"], words: "Map of the circles: black is sharp", run: () => toggle_show("coc") },
+    { keys: ["/"], words: "Wireframe", run: () => { if (scene_look()) toggle_show("wireframe"); } },
+    { keys: ["j"], words: "Next kind of shadows", run: () => controls.next_shadows() },
+    { keys: ["i"], words: "Dragging and the arrows move the light, or the camera", run: () => by_id("light-drag").click() },
+    { keys: ["y"], words: "Textures on and off", run: () => by_id("textures").click() },
     { keys: ["z"], words: "Map of the depth", run: () => toggle_show("depth") },
     { keys: ["r"], words: "Next resolution", run: () => controls.next_size() },
     { keys: ["l"], shown: pair("L"), words: "Focal length up, down", repeats: true, run: nudge("focal-length") },
@@ -513,6 +540,7 @@ async function start(ready) {
                                  ...options, element("option", { value: "random" }, "Random…"));
   by_id("scene").disabled = false;
   controls.set_methods(listing.methods);
+  controls.set_effects(listing.effects ?? []);
   cases = make_cases({ cases: listing.cases, open: (name, value) => open_newest({ failure: { name, value } }) });
   picture = make_picture({
     engine, listing,

@@ -18,9 +18,10 @@ const kDollyKeys = { "+": -1, "=": -1, "-": 1, _: 1 };
 /**
  * `camera()` gives the camera or null where there is none, `move(camera)` sets it,
  * `focus_at([x, y])` takes a place in the picture, `focus_place()` gives the last one or null,
- * `point_at([x, y] or null)` is told where the pointer rests.
+ * `point_at([x, y] or null)` is told where the pointer rests. `turn_light(right, up)`, in radians,
+ * turns the light in place of the camera, and returns whether it did.
  */
-export function start_pointer(picture, { camera, move, focus_at, focus_place, point_at }) {
+export function start_pointer(picture, { camera, move, turn_light, focus_at, focus_place, point_at }) {
   const down = new Map();  // pointers by id: {x, y}
   let travelled = 0;
   let pan = false;
@@ -72,6 +73,7 @@ export function start_pointer(picture, { camera, move, focus_at, focus_place, po
       moved((c) => panned(dollied(c, before.apart / Math.max(after.apart, 1)),
                           (before.x - after.x) / height, (after.y - before.y) / height));
     } else if (down.size === 1 && travelled > kClickPx) {
+      if (!pan && turn_light(dx / height * kTurn, -dy / height * kTurn)) return;
       moved((c) => (pan ? panned(c, -dx / height, dy / height)
                         : orbited(c, dx / height * kTurn, dy / height * kTurn)));
     }
@@ -98,14 +100,18 @@ export function start_pointer(picture, { camera, move, focus_at, focus_place, po
   let last_turn = 0;
 
   function move_on(seconds) {
+    const turn = kTurnPerS * seconds;
+    const turned = [...held].filter((key) => kOrbitKeys[key] && turn_light(
+        kOrbitKeys[key][0] * turn, kOrbitKeys[key][1] * turn));
     moved((c) => {
       let next = c;
       const speed = kWalkPart * arm_length_m(c) * seconds;
       for (const key of held) {
+        if (turned.includes(key)) continue;
         const walk = kWalkKeys[key];
         const orbit = kOrbitKeys[key];
         if (walk) next = walked(next, walk[0] * speed, walk[1] * speed, walk[2] * speed);
-        else next = orbited(next, -orbit[0] * kTurnPerS * seconds, orbit[1] * kTurnPerS * seconds);
+        else next = orbited(next, -orbit[0] * turn, orbit[1] * turn);
       }
       return next;
     });

@@ -1,7 +1,9 @@
 // All that a link carries: plain data, and the request of a frame that follows from it.
 
 export const kSizes = [[512, 512], [1024, 512], [1024, 1024]];
-export const kShows = ["image", "coc", "depth", "truth", "error"];
+export const kShows = ["image", "coc", "depth", "wireframe", "truth", "error"];
+export const kMaps = ["coc", "depth", "wireframe"];
+export const kShadows = ["none", "projected", "volumes", "map"];
 
 /** Of what can be set, by the keys of requests: text, unit, least, most, preset. The module tells. */
 export const parameters = {};
@@ -37,6 +39,10 @@ export function first_side() {
   };
 }
 
+/** What the scene is drawn with; null: as it says. `light` is the first light's place or direction. */
+export const first_look = () => (
+    { light: null, shadows: null, textures: true, impostors: null, effect: null });
+
 export function first_state() {
   return {
     /** A name, a file under /own/, or null while a failure case is open. */
@@ -50,6 +56,7 @@ export function first_state() {
     size: [512, 512],
     time: 0,
     camera: null,  // null: the scene's own, {position_m, target_m, fov_y_degrees}
+    look: first_look(),
     show: "image",
     sides: [first_side()],
     editing: 0,
@@ -68,15 +75,15 @@ export function with_scene(state, opened) {
   };
   const sides = state.sides.map((old) => ({ ...side, dof: old.dof, method: old.method,
                                             samples: old.samples }));
-  return { ...state, camera: null, time: 0, object_m: null, sides };
+  return { ...state, camera: null, look: first_look(), time: 0, object_m: null, sides };
 }
 
 /** The state of a picture of that size. It is shown by filters alone, and has no truth. */
 export function with_picture(state, { width, height }, methods) {
   const filters = methods.filter(({ kind }) => kind === "filter").map(({ name }) => name);
   return {
-    ...state, camera: null, picture: { ...state.picture, size: [width, height] },
-    show: ["truth", "error"].includes(state.show) ? "image" : state.show,
+    ...state, camera: null, look: first_look(), picture: { ...state.picture, size: [width, height] },
+    show: ["truth", "error", "wireframe"].includes(state.show) ? "image" : state.show,
     sides: state.sides.map((side) => (
         filters.includes(side.method) ? side : { ...side, method: "two-pass" })),
   };
@@ -95,7 +102,7 @@ export function frame_request(state, side, preview, hash = true) {
     time: state.time,
     dof: side.dof || measured,
     method: side.dof || !measured ? side.method : "pinhole",
-    show: state.show === "coc" || state.show === "depth" ? state.show : "image",
+    show: kMaps.includes(state.show) ? state.show : "image",
     focus: side.focus,
     ...lens_of((key) => side[key]),
     max_coc_px: side.max_coc_px,
@@ -105,6 +112,10 @@ export function frame_request(state, side, preview, hash = true) {
     hash: hash && preview === 1,
   };
   if (state.camera) request.camera = state.camera;
+  if (state.picture || state.failure) return request;
+  const { light, shadows, textures, impostors, effect } = state.look;
+  Object.assign(request, light && { light }, shadows && { shadows }, !textures && { textures },
+                impostors && { impostors }, effect && { effect });
   return request;
 }
 
