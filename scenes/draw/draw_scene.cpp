@@ -574,24 +574,22 @@ void draw_triangles(PreparedScene& prepared, const CameraMatrices& camera, doubl
 // Lays the stand-ins into a picture that has been drawn without what they stand for.
 void lay_stand_ins(PreparedScene& prepared, std::span<Image* const> layers, EdgePictures* edges,
                    ThreadPool& pool) {
-  const bool has_edges = edges != nullptr && edges->samples > 1;
+  if (edges != nullptr && edges->samples == 1) edges = nullptr;
   std::vector<std::uint8_t> changed;
   const auto width = static_cast<std::size_t>(layers[0]->width);
-  if (has_edges || prepared.has_transparent || prepared.keeps_depth) {
+  if (prepared.has_transparent || prepared.keeps_depth) {
     changed.assign(width * static_cast<std::size_t>(layers[0]->height), 0);
   }
-  prepared.stand_ins->lay(layers, changed, pool);
+  prepared.stand_ins->lay(layers, edges, changed, pool);
   if (changed.empty()) return;
   pool.for_each(layers[0]->height, [&](int y) {
     const std::uint8_t* is_changed = changed.data() + width * static_cast<std::size_t>(y);
     const std::uint16_t* texels = row<std::uint16_t>(*layers[0], y).data();
     float* depths = row<float>(prepared.depth, y).data();
-    std::uint8_t* coverage = has_edges ? row<std::uint8_t>(edges->coverage, y).data() : nullptr;
     for (std::size_t x = 0; x < width; ++x) {
       if (is_changed[x] == 0) continue;
       depths[x] = buffer_depth(prepared.scene->camera,
                                static_cast<double>(half_to_float(texels[4 * x + 3])));
-      if (coverage != nullptr) coverage[x] = 0;
     }
   });
 }

@@ -66,6 +66,12 @@ glm::vec4 clear_colour(const Scene& scene);
 Image draw_scene(const Scene& scene, const CameraMatrices& camera, double frame, int width,
                  int height, const Profile& profile, ThreadPool& pool);
 
+/// The edges of a picture, as EdgeSurfaces has them.
+struct EdgePictures {
+  int samples = 1;  ///< of a pixel, besides its centre: 4 or 8; 1: there are no edges
+  Image other{}, coverage{};
+};
+
 /// Draws some objects of a scene otherwise than as triangles
 /// (relief/impostors/scene_impostors.h).
 struct StandIns {
@@ -75,10 +81,10 @@ struct StandIns {
                                           int height, ThreadPool& pool)>
       prepare;
   /// Lays them into pictures of that view, from which the objects were left out: opaque layers, the
-  /// nearest first, as draw_layers() has them. Sets `changed`, an entry for each pixel, where the
-  /// first layer shows them.
-  std::function<void(std::span<Image* const> layers, std::span<std::uint8_t> changed,
-                     ThreadPool& pool)>
+  /// nearest first, as draw_layers() has them, with the first one's edges if there are any. Sets
+  /// `changed`, an entry for each pixel, where the first layer shows them.
+  std::function<void(std::span<Image* const> layers, EdgePictures* edges,
+                     std::span<std::uint8_t> changed, ThreadPool& pool)>
       lay;
 };
 
@@ -119,12 +125,6 @@ PreparedScene prepare_surfaces(const Scene& scene, const Profile& profile, Threa
 /// As above, into an RGBA16F picture.
 void draw_scene(PreparedScene& prepared, const CameraMatrices& camera, double frame, Image& picture,
                 ThreadPool& pool);
-
-/// The edges of a picture, as EdgeSurfaces has them.
-struct EdgePictures {
-  int samples = 1;  ///< of a pixel, besides its centre: 4 or 8; 1: there are no edges
-  Image other{}, coverage{};
-};
 
 /// The nearest opaque surfaces of each pixel, by depth peeling: `picture` as draw_scene() has it
 /// but for what is transparent, behind[0] the next surface, and so on. The background is all that

@@ -462,62 +462,102 @@ Rectangle rows_of(const Rectangle& area, int first, int end) {
   return {area.x_begin, std::max(area.y_begin, first), area.x_end, std::min(area.y_end, end)};
 }
 
-/// Puts a pixel of the scratch among the layers, by its depth.
-void insert_pixel(const std::uint16_t* texel, std::span<Image* const> layers, int x, int y,
-                  std::uint8_t* changed) {
+std::uint16_t* texel_at(Image& image, int x, int y) {
+  return row<std::uint16_t>(image, y).data() + kTexelHalves * static_cast<std::size_t>(x);
+}
+
+/// Where an impostor's share of the pixel ends, what lay there before shows, and the other way
+/// round where its share is the smaller. Returns whether the impostor has the pixel's centre.
+bool set_edge(const std::uint16_t* texel, float share, const std::uint16_t* first,
+              EdgePictures& edges, int x, int y) {
+  const bool has_centre = share >= 0.5f;
+  const bool is_nearer = texel[3] < first[3];
+  if (!is_nearer) return has_centre;
+  std::uint8_t& coverage = row<std::uint8_t>(edges.coverage, y)[static_cast<std::size_t>(x)];
+  const float others = has_centre ? 1.0f - share : share;
+  const auto byte = static_cast<std::uint8_t>(others * 255.0f + 0.5f);
+  if (!has_centre && byte <= coverage) return false;
+  coverage = byte;
+  std::copy_n(has_centre ? first : texel, kTexelHalves, texel_at(edges.other, x, y));
+  return has_centre;
+}
+
+/// Puts a pixel among the layers, by its depth. Returns whether it is the first.
+bool insert_pixel(const std::uint16_t* texel, std::span<Image* const> layers, int x, int y) {
   std::array<std::uint16_t, kTexelHalves> carried;
   std::copy_n(texel, kTexelHalves, carried.begin());
-  bool is_in = false;
+  bool is_in = false, is_first = false;
   for (std::size_t i = 0; i < layers.size(); ++i) {
-    std::uint16_t* at =
-        row<std::uint16_t>(*layers[i], y).data() + kTexelHalves * static_cast<std::size_t>(x);
+    std::uint16_t* at = texel_at(*layers[i], x, y);
     // Depths are positive halves, whose bits have their order.
     if (!is_in && carried[3] >= at[3]) continue;
-    if (!is_in && i == 0 && changed != nullptr) *changed = 1;
+    is_first = is_first || (!is_in && i == 0);
     is_in = true;
     for (std::size_t c = 0; c < kTexelHalves; ++c) std::swap(carried[c], at[c]);
   }
+  return is_first;
 }
 
-void lay(SceneImpostors& impostors, std::span<Image* const> layers, std::span<std::uint8_t> changed,
-         ThreadPool& pool) {
-  const int width = layers[0]->width, height = layers[0]->height;
-  const bool is_direct = layers.size() == 1 && changed.empty();
-  const std::uint16_t far =
-      float_to_half(clear_colour(*impostors.scene).w, HalfRounding::nearest_even);
-  if (!is_direct && (impostors.scratch.width != width || impostors.scratch.height != height)) {
-    impostors.scratch = make_image(Format::rgba16f, width, height);
+/// What a view's impostors are laid into.
+struct LaidInto {
+  std::span<Image* const> layers;
+  EdgePictures* edges;
+  std::span<std::uint8_t> changed;
+  std::uint16_t far;  ///< a half: scratch that shows nothing
+};
+
+/// Lays an area of one of them by way of the scratch.
+void lay_area(SceneImpostors& impostors, const SceneImpostors::Shown& shown,
+              const PlaneMapping& mapping, const LaidInto& into, ThreadPool& pool) {
+  const Rectangle& area = mapping.area;
+  Image& scratch = impostors.scratch;
+  for (int y = area.y_begin; y < area.y_end; ++y) {
+    for (int x = area.x_begin; x < area.x_end; ++x) texel_at(scratch, x, y)[3] = into.far;
   }
+  map_relief(shown.warped, mapping, scratch, pool,
+             into.edges != nullptr ? &impostors.shares : nullptr);
+  for (int y = area.y_begin; y < area.y_end; ++y) {
+    for (int x = area.x_begin; x < area.x_end; ++x) {
+      const std::uint16_t* texel = texel_at(scratch, x, y);
+      if (texel[3] == into.far) continue;
+      if (into.edges != nullptr) {
+        const float share = row<float>(impostors.shares, y)[static_cast<std::size_t>(x)];
+        const std::uint16_t* first = texel_at(*into.layers[0], x, y);
+        if (!set_edge(texel, share, first, *into.edges, x, y)) continue;
+      }
+      if (!insert_pixel(texel, into.layers, x, y) || into.changed.empty()) continue;
+      into.changed[static_cast<std::size_t>(y) * static_cast<std::size_t>(scratch.width) +
+                   static_cast<std::size_t>(x)] = 1;
+    }
+  }
+}
+
+void size_scratch(SceneImpostors& impostors, int width, int height) {
+  if (impostors.scratch.width == width && impostors.scratch.height == height) return;
+  impostors.scratch = make_image(Format::rgba16f, width, height);
+  impostors.shares = make_image(Format::r32f, width, height);
+}
+
+void lay(SceneImpostors& impostors, std::span<Image* const> layers, EdgePictures* edges,
+         std::span<std::uint8_t> changed, ThreadPool& pool) {
+  const int width = layers[0]->width, height = layers[0]->height;
+  const bool is_direct = layers.size() == 1 && edges == nullptr && changed.empty();
+  if (!is_direct) size_scratch(impostors, width, height);
+  const LaidInto into{layers, edges, changed,
+                      float_to_half(clear_colour(*impostors.scene).w, HalfRounding::nearest_even)};
   const int bands = (height + kBandRows - 1) / kBandRows;
   for_each_with(impostors.workers, pool, bands, [&](int band, SceneImpostors::Worker& worker) {
     const int first = band * kBandRows, end = std::min(first + kBandRows, height);
+    ThreadPool& one = alone(worker, pool.isa());
     for (std::size_t i = 0; i < impostors.shown_count; ++i) {
       const SceneImpostors::Shown& shown = impostors.shown[i];
       PlaneMapping mapping = shown.mapping;
       mapping.area = rows_of(mapping.area, first, end);
       if (mapping.area.y_begin >= mapping.area.y_end) continue;
-      ThreadPool& one = alone(worker, pool.isa());
       if (is_direct) {
         map_relief(shown.warped, mapping, *layers[0], one);
-        continue;
-      }
-      const Rectangle& area = mapping.area;
-      for (int y = area.y_begin; y < area.y_end; ++y) {
-        std::uint16_t* texels = row<std::uint16_t>(impostors.scratch, y).data();
-        for (int x = area.x_begin; x < area.x_end; ++x) {
-          texels[kTexelHalves * static_cast<std::size_t>(x) + 3] = far;
-        }
-      }
-      map_relief(shown.warped, mapping, impostors.scratch, one);
-      for (int y = area.y_begin; y < area.y_end; ++y) {
-        const std::uint16_t* texels = row<std::uint16_t>(impostors.scratch, y).data();
-        for (int x = area.x_begin; x < area.x_end; ++x) {
-          const std::uint16_t* texel = texels + kTexelHalves * static_cast<std::size_t>(x);
-          if (texel[3] == far) continue;
-          const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                                 static_cast<std::size_t>(x);
-          insert_pixel(texel, layers, x, y, changed.empty() ? nullptr : &changed[at]);
-        }
+      } else {
+        lay_area(impostors, shown, mapping, into, one);
       }
     }
   });
@@ -548,8 +588,9 @@ std::shared_ptr<const StandIns> stand_ins_of(std::shared_ptr<SceneImpostors> imp
                                    int height, ThreadPool& pool) {
     return prepare_view(*impostors, camera, frame, width, height, pool);
   };
-  stand_ins->lay = [impostors](std::span<Image* const> layers, std::span<std::uint8_t> changed,
-                               ThreadPool& pool) { lay(*impostors, layers, changed, pool); };
+  stand_ins->lay = [impostors](std::span<Image* const> layers, EdgePictures* edges,
+                               std::span<std::uint8_t> changed,
+                               ThreadPool& pool) { lay(*impostors, layers, edges, changed, pool); };
   return stand_ins;
 }
 

@@ -94,7 +94,7 @@ struct SceneImpostors {
   };
   std::vector<Shown> shown;
   std::size_t shown_count = 0;  ///< the others are memory
-  Image scratch;
+  Image scratch, shares;
   struct Worker {
     std::unique_ptr<ThreadPool> alone;
   };

@@ -25,6 +25,8 @@ struct MappedRow {
   const float* depths_m;
   int width, height;                 ///< of the texels; 2 or more
   const std::int32_t* half_of_code;  ///< linear light, as a half
+  int least_alpha;                   ///< of a pixel that is written
+  float* shares;                     ///< the row's, if they are wanted
 };
 
 }  // namespace softfocus
@@ -36,6 +38,7 @@ namespace softfocus {
 namespace {
 
 constexpr int kMostAlpha = 255 << 16;  // bilinear_sum_unorm8() of four opaque texels
+constexpr int kLeastShare = kMostAlpha / 16;
 
 int channel(std::uint32_t colour, int number) {
   return static_cast<int>(colour >> (8 * number) & 255u);
@@ -65,7 +68,7 @@ void map_pixel(const MappedRow& row, int x, std::uint16_t* pixel) {
                                weight_v);
   };
   const int alpha = sum(3);
-  if (2 * alpha < kMostAlpha) return;
+  if (alpha < row.least_alpha) return;
 
   // The depth of the texel that has most of the weight, of those that show something.
   const std::array<int, 4> weights{(256 - weight_u) * (256 - weight_v), weight_u * (256 - weight_v),
@@ -88,6 +91,7 @@ void map_pixel(const MappedRow& row, int x, std::uint16_t* pixel) {
         static_cast<std::uint16_t>(row.half_of_code[static_cast<int>(share * 255.0f + 0.5f)]);
   }
   pixel[3] = float_to_half(cut, HalfRounding::nearest_even);
+  if (row.shares != nullptr) row.shares[x] = static_cast<float>(alpha) / kMostAlpha;
 }
 
 std::array<std::int32_t, 256> halves_of_codes() {
@@ -145,7 +149,11 @@ PlaneMapping plane_mapping(const ReliefTexture& relief, const CameraMatrices& ca
   // The ray through a pixel's centre goes as far along the axis as a metre.
   const glm::dvec3 step_x = axis(0) * (2.0 / (width * camera.eye_to_clip[0][0]));
   const glm::dvec3 step_y = axis(1) * (2.0 / (height * camera.eye_to_clip[1][1]));
-  const glm::dvec3 ray = (step_x * (0.5 - 0.5 * width) + step_y * (0.5 - 0.5 * height)) - axis(2);
+  // A view of the lens looks past the picture's middle.
+  const glm::dvec3 aside = axis(0) * (camera.eye_to_clip[2][0] / camera.eye_to_clip[0][0]) +
+                           axis(1) * (camera.eye_to_clip[2][1] / camera.eye_to_clip[1][1]);
+  const glm::dvec3 ray =
+      ((step_x * (0.5 - 0.5 * width) + step_y * (0.5 - 0.5 * height)) - axis(2)) + aside;
   const auto planar = [&](const auto& of_ray) {
     return PlaneMapping::Planar{of_ray(ray), of_ray(step_x), of_ray(step_y)};
   };
@@ -167,8 +175,9 @@ PlaneMapping plane_mapping(const ReliefTexture& relief, const CameraMatrices& ca
 }
 
 void map_relief(const WarpedRelief& warped, const PlaneMapping& mapping, Image& picture,
-                ThreadPool& pool) {
+                ThreadPool& pool, Image* shares) {
   assert(picture.format == Format::rgba16f);
+  const int least_alpha = shares != nullptr ? kLeastShare : kMostAlpha / 2;
   const std::array<std::int32_t, 256> halves = halves_of_codes();
   const Rectangle& area = mapping.area;
   constexpr int kRows = 8;
@@ -190,7 +199,9 @@ void map_relief(const WarpedRelief& warped, const PlaneMapping& mapping, Image& 
                           warped.depths_m.data(),
                           warped.place.width,
                           warped.place.height,
-                          halves.data()};
+                          halves.data(),
+                          least_alpha,
+                          shares != nullptr ? softfocus::row<float>(*shares, y).data() : nullptr};
       std::uint16_t* pixels = softfocus::row<std::uint16_t>(picture, y).data();
       int x = area.x_begin;
       if (pool.isa() != Isa::scalar) {
@@ -266,7 +277,7 @@ int map_vectors(const MappedRow& row, int x, int end, std::uint16_t* pixels) {
                                gather(colours, first + row.width, shown),
                                gather(colours, first + row.width + 1, shown)};
     const Ints alpha = channel_sum<3>(texels, weight_u, weight_v);
-    shown &= ~(alpha + alpha < (255 << 16));
+    shown &= ~(alpha < row.least_alpha);
     if (!any(shown)) continue;
 
     Ints most = splat(-1);
@@ -291,6 +302,9 @@ int map_vectors(const MappedRow& row, int x, int end, std::uint16_t* pixels) {
     pixel.a = select(
         shown, float_to_half<HalfRounding::nearest_even>(select(shown, cut, splat(0.0f))), pixel.a);
     store_half_texels(pixels + 4 * x, pixel);
+    if (row.shares == nullptr) continue;
+    const Floats share = to_floats(alpha) / static_cast<float>(255 << 16);
+    store(row.shares + x, select(shown, share, load(row.shares + x)));
   }
   return x;
 }

@@ -46,8 +46,10 @@ Rectangle seen_area(std::span<const glm::dvec3> points, const CameraMatrices& ca
 PlaneMapping plane_mapping(const ReliefTexture& relief, const CameraMatrices& camera,
                            const PlaneRectangle& place, int width, int height);
 
-/// Lays a warped relief over an RGBA16F picture with depth in alpha, both of the camera.
+/// Lays a warped relief over an RGBA16F picture with depth in alpha, both of the camera. With
+/// `shares`, R32F of the same size, a pixel is written from a sixteenth of the weight on, and its
+/// share of the weight goes there.
 void map_relief(const WarpedRelief& warped, const PlaneMapping& mapping, Image& picture,
-                ThreadPool& pool);
+                ThreadPool& pool, Image* shares = nullptr);
 
 }  // namespace softfocus
