@@ -16,6 +16,8 @@ struct CameraMatrices {
   glm::dmat4 world_to_eye;  ///< the eye looks along -z, y up
   glm::dmat4 eye_to_clip;
   glm::dvec3 eye;  ///< in the world
+
+  bool operator==(const CameraMatrices&) const = default;
 };
 
 /// What the camera looks at.

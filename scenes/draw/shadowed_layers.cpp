@@ -36,19 +36,30 @@ void place_light(SceneShadows& shadows, std::size_t i, ShadowKind kind, const Sh
                                       : without_triangles(shadows.facets, light);
   shadows.maps[i] = {};
   shadows.volumes[i] = {};
+  for (std::vector<VolumeBits>& of_layer : shadows.volume_bits) of_layer[i] = {};
   if (kind == ShadowKind::volumes) {
     shadows.volumes[i] = make_shadow_volumes(shadows.facets, shadows.joined, light);
   }
 }
 
-// Draws the volumes of the lights that have them.
-void draw_volumes(SceneShadows& shadows, const ShadowView& view, glm::dvec3 eye,
-                  std::span<const SeenFacet> seen, std::span<std::uint8_t> mask, ThreadPool& pool) {
+// Draws the volumes of the lights that have them, or takes their bits of the frame before.
+void draw_volumes(SceneShadows& shadows, std::size_t layer, const ShadowView& view, glm::dvec3 eye,
+                  ThreadPool& pool) {
+  std::vector<std::uint8_t>& mask = shadows.masks[layer];
   for (std::size_t i = 0; i < shadows.volumes.size(); ++i) {
     if (shadows.volumes[i].casters.empty()) continue;
-    shadows.volume_rays += draw_volume_mask(
-        shadows.facets, shadows.joined, shadows.volumes[i], shadows.projected[i].lit,
-        static_cast<std::uint8_t>(1u << i), seen, view, eye, shadows.volume_count, mask, pool);
+    const auto bit = static_cast<std::uint8_t>(1u << i);
+    VolumeBits& bits = shadows.volume_bits[layer][i];
+    if (bits.mask.empty()) {
+      bits.rays = draw_volume_mask(shadows.facets, shadows.joined, shadows.volumes[i],
+                                   shadows.projected[i].lit, bit, shadows.seen[layer], view, eye,
+                                   shadows.volume_count, mask, pool);
+      bits.mask.resize(mask.size());
+      for (std::size_t p = 0; p < mask.size(); ++p) bits.mask[p] = mask[p] & bit;
+    } else {
+      for (std::size_t p = 0; p < mask.size(); ++p) mask[p] |= bits.mask[p];
+    }
+    shadows.volume_rays += bits.rays;
   }
 }
 
@@ -141,7 +152,7 @@ void draw_masks(SceneShadows& shadows, const Scene& scene, std::span<const Light
     shadows.masks[i].resize(shadows.seen[i].size());
     draw_shadow_mask(cut_shadows(shadows.facets, of_lights, shadows.seen[i], view, pool), view,
                      shadows.masks[i], pool);
-    draw_volumes(shadows, view, camera.eye, shadows.seen[i], shadows.masks[i], pool);
+    draw_volumes(shadows, i, view, camera.eye, pool);
     look_up_maps(shadows, i, view, camera.eye, pool);
     if (softens) soften_layer(shadows, lights, i, view, camera.eye, pool);
   }
@@ -420,8 +431,13 @@ void add_shadows(const PreparedScene& prepared, const CameraMatrices& camera, do
   const Scene& scene = *prepared.scene;
   const int width = layers[0]->width, height = layers[0]->height;
   place_shadows(shadows, scene, lights, frame, pool);
-  shadows.seen = draw_seen_facets(shadows.numbered, scene, camera, frame, width, height,
-                                  layers.size(), pool, behind_before, prepared.hidden);
+  SeenFrom from{camera, frame, width, height, layers.size(), behind_before, prepared.hidden};
+  if (!shadows.seen_from || *shadows.seen_from != from) {
+    shadows.seen = draw_seen_facets(shadows.numbered, scene, camera, frame, width, height,
+                                    layers.size(), pool, behind_before, prepared.hidden);
+    shadows.volume_bits.assign(layers.size(), std::vector<VolumeBits>(shadows.lights.size()));
+    shadows.seen_from = std::move(from);
+  }
   draw_masks(shadows, scene, lights, camera, width, height, shadows.pass.profile, pool);
   const Tiles tiles = find_masks(shadows, width, height, pool);
   const std::vector<std::vector<int>> with_shares =

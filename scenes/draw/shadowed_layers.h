@@ -36,8 +36,26 @@ CurvedSurfaces curved_surfaces(const Scene& scene, double frame);
 
 ShadowLight shadow_light(const Light& light);
 
-/// Kept from frame to frame: projected triangles and volumes as long as nothing moves, and
-/// memory.
+/// What is seen of a scene's triangles: all that seen facets depend on.
+struct SeenFrom {
+  CameraMatrices camera{};
+  double frame = 0.0;
+  int width = 0, height = 0;
+  std::size_t layers = 0;
+  std::optional<float> behind_before{};
+  std::vector<std::uint8_t> hidden{};
+
+  bool operator==(const SeenFrom&) const = default;
+};
+
+/// A light's bits of a layer's mask, and VolumeCount's rays.
+struct VolumeBits {
+  std::vector<std::uint8_t> mask{};
+  std::size_t rays = 0;
+};
+
+/// Kept from frame to frame: projected triangles and volumes as long as nothing moves, the facets
+/// and the volumes' masks of a view that stays, and memory.
 struct SceneShadows {
   NumberedScene numbered;
   std::vector<std::size_t> lights;  ///< of the scene, those with shadows: bit i is lights[i]
@@ -53,7 +71,10 @@ struct SceneShadows {
   VolumeCount volume_count = VolumeCount::z_fail;
   bool by_rays = false;         ///< every pixel by a ray to each light, whatever its kind
   std::size_t volume_rays = 0;  ///< what draw_volume_mask() returned for the last frame's layers
-  std::vector<std::vector<SeenFacet>> seen;      ///< of each layer
+  std::optional<SeenFrom> seen_from{};
+  std::vector<std::vector<SeenFacet>> seen;  ///< of each layer
+  /// Of each layer, of each of `lights`: empty if it has to be drawn.
+  std::vector<std::vector<VolumeBits>> volume_bits{};
   std::vector<std::vector<std::uint8_t>> masks;  ///< of each layer: shadow_mask.h
   /// Of each of `lights`. Of other kinds than map, and before they are drawn, they have no sides.
   std::vector<ShadowMap> maps;

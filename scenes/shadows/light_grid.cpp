@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "scenes/shadows/facets.h"
 
@@ -131,15 +132,27 @@ void set_side(LightGrid& grid, std::span<const Facet> facets,
                std::max(box.high.y - box.low.y, least_size)};
 }
 
-// How often the cells name a caster.
-std::size_t entries(const LightGrid& grid, std::span<const Facet> facets,
-                    std::span<const std::uint32_t> casters) {
-  std::size_t sum = 0;
+// Cells of a row that name a caster.
+struct CasterRow {
+  std::uint32_t caster;
+  int first, count;
+};
+
+// All of them; none if they are more than `most` cells.
+std::optional<std::vector<CasterRow>> caster_rows(const LightGrid& grid,
+                                                  std::span<const Facet> facets,
+                                                  std::span<const std::uint32_t> casters,
+                                                  std::size_t most) {
+  std::vector<CasterRow> rows;
+  std::size_t entries = 0;
   for (const std::uint32_t caster : casters) {
-    for_each_row(grid, facets[caster].corners,
-                 [&](int, int count) { sum += static_cast<std::size_t>(count); });
+    for_each_row(grid, facets[caster].corners, [&](int first, int count) {
+      rows.push_back({caster, first, count});
+      entries += static_cast<std::size_t>(count);
+    });
+    if (entries > most) return {};
   }
-  return sum;
+  return rows;
 }
 
 }  // namespace
@@ -162,26 +175,27 @@ LightGrid make_light_grid(const Facets& facets, const ShadowLight& light) {
   grid.cells = std::clamp(static_cast<int>(std::sqrt(per_side)), 1, kMostCells);
   if (grid.sides == 1) set_side(grid, facets.facets, casters);
   const std::size_t most = kMostEntries * (casters.size() + 1);
-  while (grid.cells > 1 && entries(grid, facets.facets, casters) > most) grid.cells /= 2;
+  constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
+  auto rows = caster_rows(grid, facets.facets, casters, grid.cells > 1 ? most : kAny);
+  while (!rows) {
+    grid.cells /= 2;
+    rows = caster_rows(grid, facets.facets, casters, grid.cells > 1 ? most : kAny);
+  }
 
   const auto cell_count = static_cast<std::size_t>(grid.sides) *
                           static_cast<std::size_t>(grid.cells) *
                           static_cast<std::size_t>(grid.cells);
   grid.begins.assign(cell_count + 1, 0);
-  for (const std::uint32_t caster : casters) {
-    for_each_row(grid, facets.facets[caster].corners, [&](int first, int count) {
-      for (int i = 0; i < count; ++i) ++grid.begins[static_cast<std::size_t>(first + i) + 1];
-    });
+  for (const auto& [caster, first, count] : *rows) {
+    for (int i = 0; i < count; ++i) ++grid.begins[static_cast<std::size_t>(first + i) + 1];
   }
   for (std::size_t i = 0; i < cell_count; ++i) grid.begins[i + 1] += grid.begins[i];
   grid.casters.resize(grid.begins.back());
   std::vector<std::uint32_t> next(grid.begins.begin(), grid.begins.end() - 1);
-  for (const std::uint32_t caster : casters) {
-    for_each_row(grid, facets.facets[caster].corners, [&](int first, int count) {
-      for (int i = 0; i < count; ++i) {
-        grid.casters[next[static_cast<std::size_t>(first + i)]++] = caster;
-      }
-    });
+  for (const auto& [caster, first, count] : *rows) {
+    for (int i = 0; i < count; ++i) {
+      grid.casters[next[static_cast<std::size_t>(first + i)]++] = caster;
+    }
   }
   return grid;
 }

@@ -103,6 +103,38 @@ test("every control changes the picture to the program's for the same settings",
   await changed("resolution 1024x1024");
 });
 
+test("the light moves by hand; shadows, textures, effects and wires are the program's", async (page) => {
+  const plain = await drawn(page);
+  await press(page, "j");
+  await equals_program(page);
+  assert.match(await text_of(page, "shadow-counts"), /casters/);
+  await page.selectOption("#shadows", "volumes");
+  const still = await drawn(page);
+  assert.notStrictEqual(still, plain);
+  await page.locator("#light-drag").check();
+  const box = await page.locator("#picture").boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width / 2 + 60, box.y + box.height / 2 - 30, { steps: 4 });
+  await page.mouse.up();
+  await page.waitForFunction(() => !document.getElementById("light-home").disabled);
+  const moved = await drawn(page);
+  assert.notStrictEqual(moved, still);
+  await equals_program(page);
+  await press(page, "/");
+  await equals_program(page);
+  await press(page, "/");
+  await page.selectOption("#effect", "sharpen");
+  await equals_program(page);
+  await page.selectOption("#effect", "");
+  await press(page, "ArrowRight");
+  assert.notStrictEqual(await drawn(page), moved);
+  await page.locator("#light-home").click();
+  assert.strictEqual(await drawn(page), still);
+  await page.locator("#reset").click();
+  assert.strictEqual(await drawn(page), plain);
+});
+
 test("a click sets the focus, and reset takes all back", async (page) => {
   const first = await drawn(page);
   const box = await page.locator("#picture").boundingBox();
