@@ -159,6 +159,7 @@ struct Object {
   double sway_period_frames = 1.0;
   double sway_phase = 0.0;
   ImpostorUse impostor = ImpostorUse::never;
+  std::uint32_t model = 0;  ///< parts of one model, one after the other, have one number; 0: alone
 };
 
 /// Whether it stands elsewhere at another frame.

@@ -603,7 +603,8 @@ void draw_layers(PreparedScene& prepared, const CameraMatrices& camera, double f
     return draw_triangles(prepared, camera, frame, picture, behind, pool, behind_before_m, edges);
   }
   prepared.hidden = prepared.stand_ins->prepare(camera, frame, picture.width, picture.height, pool);
-  draw_triangles(prepared, camera, frame, picture, behind, pool, behind_before_m, edges);
+  // An impostor may come to lie before what is in focus, which then is behind.
+  draw_triangles(prepared, camera, frame, picture, behind, pool, {}, edges);
   prepared.hidden.clear();
   std::vector<Image*> layers{&picture};
   for (Image& layer : behind) layers.push_back(&layer);

@@ -129,10 +129,10 @@ void draw_scene(PreparedScene& prepared, const CameraMatrices& camera, double fr
 /// The nearest opaque surfaces of each pixel, by depth peeling: `picture` as draw_scene() has it
 /// but for what is transparent, behind[0] the next surface, and so on. The background is all that
 /// lies behind the last surface, again and again. Up to kMaxLayers - 1 behind, of the picture's
-/// size and format. With `behind_before_m` they show the background behind what is as far as that
-/// or farther, and cost less: no method looks behind what is in focus. With `edges` these are those
-/// of the picture; softpipe's profile has none. Scenes whose materials have shaders, or that are
-/// drawn in several passes, have those between depths alone (find_edges()).
+/// size and format. With `behind_before_m` they may show the background behind what is as far as
+/// that or farther, and cost less: no method looks behind what is in focus. With `edges` these are
+/// those of the picture; softpipe's profile has none. Scenes whose materials have shaders, or that
+/// are drawn in several passes, have those between depths alone (find_edges()).
 void draw_layers(PreparedScene& prepared, const CameraMatrices& camera, double frame,
                  Image& picture, std::span<Image> behind, ThreadPool& pool,
                  std::optional<double> behind_before_m = {}, EdgePictures* edges = nullptr);

@@ -70,6 +70,14 @@ glm::dvec3 target_at(const Camera& camera, double frame) {
   return place_at(camera.target_keys, camera.easing, camera.target, frame);
 }
 
+bool can_look(const Camera& camera, double frame) {
+  const glm::dvec3 way = target_at(camera, frame) -
+                         place_at(camera.position_keys, camera.easing, camera.position, frame);
+  const glm::dvec3 aside = cross(way, camera.up);
+  // Shorter than this, the sideways axis would be rounding noise.
+  return dot(aside, aside) > 1e-12 * (dot(way, way) * dot(camera.up, camera.up));
+}
+
 CameraMatrices camera_matrices(const Camera& camera, double frame, int width, int height) {
   const glm::dvec3 target = target_at(camera, frame);
   const glm::dvec3 position = place_at(camera.position_keys, camera.easing, camera.position, frame);

@@ -20,6 +20,10 @@ struct CameraMatrices {
   bool operator==(const CameraMatrices&) const = default;
 };
 
+/// Whether it stands elsewhere than at its target, and does not look along `up`: keys can lead
+/// there between them.
+bool can_look(const Camera& camera, double frame);
+
 /// What the camera looks at.
 glm::dvec3 target_at(const Camera& camera, double frame);
 

@@ -391,6 +391,11 @@ std::shared_ptr<SceneShadows> make_scene_shadows(const Scene& scene, const Profi
   return shadows;
 }
 
+void forget(SceneShadows& shadows, bool all) {
+  shadows.seen_from.reset();
+  if (all) shadows.frame.reset();
+}
+
 void place_shadows(SceneShadows& shadows, const Scene& scene, std::span<const Light> lights,
                    double frame, ThreadPool& pool) {
   const std::size_t count = shadows.lights.size();

@@ -95,6 +95,9 @@ std::shared_ptr<SceneShadows> make_scene_shadows(const Scene& scene, const Profi
 void place_shadows(SceneShadows& shadows, const Scene& scene, std::span<const Light> lights,
                    double frame, ThreadPool& pool);
 
+/// What is kept of a view goes; with `all`, of the lights too.
+void forget(SceneShadows& shadows, bool all);
+
 /// What is drawn of the first layer's shadows, once add_shadows() has drawn it.
 MaskDraws cut_shadows(const SceneShadows& shadows, const CameraMatrices& camera, int width,
                       int height, ThreadPool& pool);

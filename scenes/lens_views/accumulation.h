@@ -69,7 +69,7 @@ struct AccumulationBuffer {
   TransparentTargets transparent;
   std::vector<RenderPass> transparent_passes;
   std::vector<TileLists> transparent_lists;
-  /// Likewise, if a light has shadows: the views, whole.
+  /// Likewise, if a light has shadows or there are stand-ins: the views, whole.
   std::vector<Image> whole;
 };
 

@@ -131,8 +131,10 @@ void add_model(Scene& scene, ObjModel model, const Object& placement,
                std::optional<std::uint32_t> material) {
   const auto first_material = static_cast<std::uint32_t>(scene.materials.size());
   const auto first_texture = static_cast<std::uint32_t>(scene.textures.size());
+  const auto number = static_cast<std::uint32_t>(scene.objects.size() + 1);
   for (ObjModel::Part& part : model.parts) {
     Object object = placement;
+    object.model = number;
     object.mesh = static_cast<std::uint32_t>(scene.meshes.size());
     object.mesh_origin = model.origin;
     object.material = material.value_or(first_material + part.material);

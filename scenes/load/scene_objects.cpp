@@ -99,9 +99,11 @@ void read_model(Section& section, const std::filesystem::path& directory,
     model.count = scene.objects.size() - model.first_object;
     return;
   }
+  const auto number = static_cast<std::uint32_t>(scene.objects.size() + 1);
   for (std::size_t i = 0; i < model.count; ++i) {
     const Object& same = scene.objects[model.first_object + i];
     Object object = placement;
+    object.model = number;
     object.mesh = same.mesh;
     object.mesh_origin = same.mesh_origin;
     object.material = material.value_or(same.material);

@@ -36,10 +36,12 @@ struct RepeatedShadows {
   RepeatedShadows(const RepeatedShadows&) = delete;
   RepeatedShadows& operator=(const RepeatedShadows&) = delete;
 
-  void draw() { draw_scene(prepared, camera, frame, picture, pool); }
-  void draw_anew() {
-    prepared.shadows->frame.reset();
-    draw();
+  /// As if the camera alone had moved.
+  void draw() { draw_forgetting(false); }
+  void draw_anew() { draw_forgetting(true); }
+  void draw_forgetting(bool all) {
+    if (prepared.shadows) forget(*prepared.shadows, all);
+    draw_scene(prepared, camera, frame, picture, pool);
   }
 
   SceneShadows& shadows() { return *prepared.shadows; }

@@ -99,7 +99,16 @@ void set_look(Page& page, const SceneLook& look) {
   scene.lights = opened.lights;
   scene.materials = opened.materials;
   scene.objects = opened.objects;
-  set_look(look, scene);
+  try {
+    set_look(look, scene);
+  } catch (const UsageError&) {
+    scene.lights = opened.lights;
+    scene.materials = opened.materials;
+    scene.objects = opened.objects;
+    opened.look = {};
+    page.memory = {};
+    throw;
+  }
   if (moved != opened.look || has_impostors(scene)) page.memory = {};
   opened.look = look;
 }
@@ -157,6 +166,10 @@ Shot asked_shot(Page& page, const FrameSettings& settings) {
   if (page.opened->stress_case) return shot;
   set_look(page, settings.look);
   scene.camera = chosen_camera(page.opened->camera, settings.camera);
+  if (!can_look(scene.camera, settings.frame)) {
+    throw UsageError(
+        "camera: at this time it stands at its target, or looks along its upward axis");
+  }
   if (settings.show != Show::image) return shot;
   shot.effects = asked_effects(scene, settings);
   if (settings.method.has_shutter()) shot.sampling.shutter_frames = scene.camera.shutter_frames;

@@ -500,6 +500,11 @@ ShotLens asked_lens(const RenderOptions& options, const Scene& scene) {
 }  // namespace
 
 Shot asked_shot(const RenderOptions& options, const Scene& scene, FrameSequence& sequence) {
+  if (!can_look(scene.camera, options.frame)) {
+    throw UsageError("frame " + short_number(options.frame) + ": the camera of '" + options.scene +
+                     "' stands at its target or looks along its upward axis; other keys of its "
+                     "position or target would be right");
+  }
   const bool is_of_frames = checked_effect_of_frames(options, scene).has_value();
   if (options.samples_are_given && options.samples > 1 && has_sample_rows(scene) &&
       drawn_size(options).height * options.samples > kMaxImageSize) {

@@ -16,7 +16,6 @@ namespace {
 // Nanoseconds with two threads, AVX2: of a triangle that is drawn; of a relief's texel that is
 // warped and mapped, or drawn, read and searched for critical points.
 constexpr double kTriangleNs = 24.0, kWarpNs = 3.5, kRenewalNs = 10.0;
-constexpr double kReliefBytes = 6.0;  // a texel
 
 // Each way: texels are filtered twice, by the warp and on the way to the picture.
 constexpr double kTexelsPerPixel = 1.6;
@@ -28,8 +27,14 @@ constexpr double kMostCost = 0.5;
 // The error of the relief is the mean of so many regions each way.
 constexpr int kErrorRegions = 8;
 
+// Of a relief, and of a texel.
+constexpr double kReliefBytes =
+    kErrorRegions * kErrorRegions * sizeof(std::optional<CriticalRegion>) +
+    sizeof(SceneImpostors::Kept);
+constexpr double kTexelBytes = sizeof(std::uint16_t) + sizeof(std::uint32_t);
+
 // With a budget of milliseconds: the tolerance may grow so many times.
-constexpr double kMostTolerance = 16.0;
+constexpr int kMostTolerance = 16;
 
 constexpr int kBandRows = 32;
 
@@ -39,9 +44,8 @@ glm::dvec3 moved_by(const glm::dmat4& matrix, glm::dvec3 p) {
          glm::dvec3{matrix[3]};
 }
 
-bool is_same_place(const Object& a, const Object& b) {
-  return a.position == b.position && a.rotation_degrees == b.rotation_degrees &&
-         a.scale == b.scale && a.impostor == b.impostor;
+bool is_same_model(const Object& a, const Object& b) {
+  return a.model != 0 && a.model == b.model && a.impostor == b.impostor;
 }
 
 bool can_be_impostor(const Scene& scene, const Object& object) {
@@ -97,7 +101,7 @@ std::vector<ImpostorObject> impostor_objects(const Scene& scene,
   mesh_corners.resize(scene.meshes.size());
   for (std::size_t first = 0; first < scene.objects.size();) {
     std::size_t end = first + 1;
-    while (end < scene.objects.size() && is_same_place(scene.objects[first], scene.objects[end])) {
+    while (end < scene.objects.size() && is_same_model(scene.objects[first], scene.objects[end])) {
       ++end;
     }
     ImpostorObject object{first, end, scene.objects[first].impostor, {}, {}, 0.0, 0};
@@ -133,7 +137,8 @@ struct ImpostorView {
   std::array<glm::dvec4, 6> planes;  ///< inwards, of unit length: near, far, four sides
   double pixel_tangent;
   int height_px;
-  double speed_m;  ///< a frame
+  double speed_m;     ///< a frame
+  double farthest_m;  ///< whose half is not the background's
 };
 
 std::array<glm::dvec4, 6> planes_of(const CameraMatrices& camera) {
@@ -212,9 +217,10 @@ std::optional<ImpostorChoice> choice_for(const ImpostorObject& object, std::size
   const double cell_radians = tolerance_px / radius_px;
   // The sphere's area over so many cells, a square of which is cell_radians wide.
   constexpr double kSphere = 3.545;
-  constexpr int kMostCells = 1 << 14;
-  const int cells =
-      static_cast<int>(std::clamp(std::ceil(kSphere / cell_radians), 2.0, 1.0 * kMostCells));
+  constexpr double kMostCells = 1 << 14;
+  const double wanted = std::ceil(kSphere / cell_radians);
+  if (!(wanted <= kMostCells)) return {};
+  const int cells = std::max(static_cast<int>(wanted), 2);
   const glm::dvec2 place = octahedral_place(arm, false);
   const auto cell_of = [&](double along) {
     return std::clamp(static_cast<int>(along * cells), 0, cells - 1);
@@ -231,7 +237,8 @@ std::optional<ImpostorChoice> choice_for(const ImpostorObject& object, std::size
   choice.view = {object.middle + direction * (shell_m * kMiddle), up_for(direction),
                  ReliefProjection::perspective};
   choice.texels_per_pixel = kMiddle * kTexelsPerPixel;
-  choice.texels = 4.0 * radius_px * radius_px * kTexelsPerPixel * kTexelsPerPixel;
+  const double across = std::fmin(2.0 * radius_px * kTexelsPerPixel, kMostReliefSize);
+  choice.texels = across * across;
   const double cell_m = cell_radians * shell_m;
   const double renewals = std::fmin(view.speed_m / cell_m, 1.0);
   choice.geometry_ns = kTriangleNs * static_cast<double>(object.triangles);
@@ -251,10 +258,14 @@ void hide(const ImpostorObject& object, std::vector<std::uint8_t>& hidden) {
             hidden.begin() + static_cast<std::ptrdiff_t>(object.end), std::uint8_t{1});
 }
 
+double bytes_for(const ImpostorChoice& choice) {
+  return kReliefBytes + kTexelBytes * choice.texels;
+}
+
 void keep_to_memory(double bytes, Choices& choices) {
   std::vector<ImpostorChoice>& chosen = choices.chosen;
   double sum = 0.0;
-  for (const ImpostorChoice& choice : chosen) sum += kReliefBytes * choice.texels;
+  for (const ImpostorChoice& choice : chosen) sum += bytes_for(choice);
   if (sum <= bytes) return;
   std::vector<std::size_t> order(chosen.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -266,7 +277,7 @@ void keep_to_memory(double bytes, Choices& choices) {
   std::vector<std::size_t> fits;
   sum = 0.0;
   for (const std::size_t i : order) {
-    const double more = kReliefBytes * chosen[i].texels;
+    const double more = bytes_for(chosen[i]);
     if (sum + more > bytes) continue;
     sum += more;
     fits.push_back(i);
@@ -284,6 +295,8 @@ Choices choices_for(const SceneImpostors& impostors, const ImpostorView& view,
   Choices choices;
   choices.hidden.assign(impostors.scene->objects.size(), 0);
   choices.counts.tolerance_px = tolerance_px;
+  // A camera that looks nowhere sees nothing of anything.
+  if (!std::isfinite(length_of(glm::dvec3{view.planes[0]}))) return choices;
   for (std::size_t i = 0; i < impostors.objects.size(); ++i) {
     const ImpostorObject& object = impostors.objects[i];
     if (is_out_of_view(object, view)) {
@@ -291,8 +304,8 @@ Choices choices_for(const SceneImpostors& impostors, const ImpostorView& view,
       ++choices.counts.out_of_view;
       continue;
     }
-    const bool is_cut = nearest_corner(object, view.planes[0]) < 0.0 ||
-                        nearest_corner(object, view.planes[1]) < 0.0;
+    const double depth_m = impostors.scene->camera.near_m + farthest_corner(object, view.planes[0]);
+    const bool is_cut = nearest_corner(object, view.planes[0]) < 0.0 || depth_m > view.farthest_m;
     const std::optional<ImpostorChoice> choice =
         is_cut ? std::nullopt : choice_for(object, i, view, tolerance_px);
     if (choice && (object.use == ImpostorUse::wherever_possible ||
@@ -322,9 +335,11 @@ Choices choices_in_time(const SceneImpostors& impostors, const ImpostorView& vie
   const ImpostorBudget& budget = impostors.scene->impostors;
   Choices choices = choices_for(impostors, view, budget.tolerance_px);
   if (budget.milliseconds == 0.0) return choices;
-  for (double times = 2.0; times <= kMostTolerance; times *= 2.0) {
+  for (int times = 2; times <= kMostTolerance; times *= 2) {
     if (choices.counts.predicted_ms <= budget.milliseconds) break;
-    choices = choices_for(impostors, view, times * budget.tolerance_px);
+    Choices coarser = choices_for(impostors, view, times * budget.tolerance_px);
+    if (coarser.counts.predicted_ms >= choices.counts.predicted_ms) break;
+    choices = std::move(coarser);
   }
   return choices;
 }
@@ -368,13 +383,15 @@ std::optional<DrawnRelief> new_relief(SceneImpostors& impostors, const ImpostorC
   return known_relief(std::move(relief), settings, choice.view.eye, pool);
 }
 
+std::size_t bytes_of(const SceneImpostors::Kept& kept) {
+  return sizeof kept + (kept.relief ? bytes_of(*kept.relief) : 0);
+}
+
 /// Those that were used longest ago go, but none of this view.
 void drop_old_reliefs(SceneImpostors& impostors) {
   const double most = impostors.scene->impostors.memory_mb * 1e6;
   std::size_t sum = 0;
-  for (const auto& [cell, kept] : impostors.kept) {
-    if (kept.relief) sum += bytes_of(*kept.relief);
-  }
+  for (const auto& [cell, kept] : impostors.kept) sum += bytes_of(kept);
   while (static_cast<double>(sum) > most) {
     auto oldest = impostors.kept.end();
     for (auto at = impostors.kept.begin(); at != impostors.kept.end(); ++at) {
@@ -382,7 +399,7 @@ void drop_old_reliefs(SceneImpostors& impostors) {
       if (oldest == impostors.kept.end() || at->second.used < oldest->second.used) oldest = at;
     }
     if (oldest == impostors.kept.end()) break;
-    if (oldest->second.relief) sum -= bytes_of(*oldest->second.relief);
+    sum -= bytes_of(oldest->second);
     impostors.kept.erase(oldest);
   }
   impostors.counts.bytes = sum;
@@ -412,9 +429,10 @@ void warp_all(SceneImpostors& impostors, std::span<const DrawnRelief* const> rel
                 });
 }
 
-bool serves(const DrawnRelief& relief, glm::dvec3 eye, double tolerance_texels) {
+// Neighbours that stay are a texel apart.
+bool serves(const DrawnRelief& relief, glm::dvec3 eye, double tolerance_px) {
   return warped_extent(relief.texture, relief.extent, eye).has_value() &&
-         impostor_error(relief, eye) <= 1.0 + kMostErrors * tolerance_texels;
+         impostor_error(relief, eye) <= 1.0 + kMostErrors * kTexelsPerPixel * tolerance_px;
 }
 
 std::vector<std::uint8_t> prepare_view(SceneImpostors& impostors, const CameraMatrices& camera,
@@ -423,8 +441,13 @@ std::vector<std::uint8_t> prepare_view(SceneImpostors& impostors, const CameraMa
   ++impostors.views;
   if (impostors.shadows_move && impostors.frame != frame) impostors.kept.clear();
   impostors.frame = frame;
-  const ImpostorView view{camera, planes_of(camera), pixel_tangent_of(camera, height), height,
-                          speed_of(scene.camera, frame)};
+  constexpr double kBeforeBackground = 0.999;
+  const ImpostorView view{camera,
+                          planes_of(camera),
+                          pixel_tangent_of(camera, height),
+                          height,
+                          speed_of(scene.camera, frame),
+                          kBeforeBackground * static_cast<double>(clear_colour(scene).w)};
   Choices choices = choices_in_time(impostors, view);
   std::vector<const DrawnRelief*> reliefs;
   for (const ImpostorChoice& choice : choices.chosen) {
@@ -445,7 +468,11 @@ std::vector<std::uint8_t> prepare_view(SceneImpostors& impostors, const CameraMa
     }
     const ImpostorObject& object = impostors.objects[choice.cell.object];
     for (std::size_t i = object.first; i < object.end; ++i) choices.hidden[i] = 0;
-    ++choices.counts.as_geometry;
+    ImpostorCounts& counts = choices.counts;
+    ++counts.as_geometry;
+    counts.triangles += static_cast<double>(object.triangles);
+    counts.texels -= choice.texels;
+    counts.predicted_ms += 1e-6 * (choice.geometry_ns - choice.cost_ns);
   }
   choices.counts.shown = static_cast<int>(reliefs.size());
   impostors.counts = choices.counts;
@@ -582,7 +609,7 @@ std::shared_ptr<SceneImpostors> make_scene_impostors(const Scene& scene, ThreadP
   return impostors;
 }
 
-std::shared_ptr<const StandIns> stand_ins_of(std::shared_ptr<SceneImpostors> impostors) {
+std::shared_ptr<const StandIns> stand_ins_of(const std::shared_ptr<SceneImpostors>& impostors) {
   auto stand_ins = std::make_shared<StandIns>();
   stand_ins->prepare = [impostors](const CameraMatrices& camera, double frame, int width,
                                    int height, ThreadPool& pool) {

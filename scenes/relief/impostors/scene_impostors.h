@@ -10,8 +10,10 @@
 // Cells are so wide that, within one, what lies an object's radius behind comes to lie about
 // `tolerance_px` beside. An object is drawn as geometry
 //
-//   - near its relief: less than kNearestRadii of its radius away, or cut by the near or far plane
-//   - if its relief's error in this view is above kMostErrors tolerances
+//   - near its relief: less than kNearestRadii of its radius away, cut by the near plane, or as far
+//     as the background's half
+//   - if the tolerance wants more cells than there are, or if neighbours in its relief come farther
+//     apart in this view than kMostErrors tolerances, in the mean of regions (5.6)
 //   - if its reliefs do not fit into the memory, those that save the least first
 //   - under ImpostorUse::where_cheaper, if its triangles are predicted to cost less
 //   - always, if it is transparent or has a user's shaders
@@ -20,11 +22,11 @@
 // 0..1. Of several surfaces of a pixel an impostor has the first alone.
 
 #include <array>
-#include <compare>
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "raster/threads/loops.h"
@@ -40,7 +42,7 @@ inline constexpr double kMostErrors = 8.0;
 /// Whether any object is to be an impostor.
 bool has_impostors(const Scene& scene);
 
-/// Objects one after the other that stand at one place, as the parts of a model do.
+/// An object, or the parts of a model.
 struct ImpostorObject {
   std::size_t first, end;  ///< of the scene's objects
   ImpostorUse use;
@@ -55,7 +57,11 @@ struct ReliefCell {
   std::size_t object;
   int shell, cells, u, v;  ///< `cells` each way
   float pixel_tangent;     ///< that its texels are made for
-  auto operator<=>(const ReliefCell&) const = default;
+
+  bool operator<(const ReliefCell& other) const {
+    return std::tie(object, shell, cells, u, v, pixel_tangent) <
+           std::tie(other.object, other.shell, other.cells, other.u, other.v, other.pixel_tangent);
+  }
 };
 
 /// What a frame's objects became.
@@ -105,6 +111,6 @@ struct SceneImpostors {
 /// The scene must outlive it. `pool` is the one that will draw.
 std::shared_ptr<SceneImpostors> make_scene_impostors(const Scene& scene, ThreadPool& pool);
 
-std::shared_ptr<const StandIns> stand_ins_of(std::shared_ptr<SceneImpostors> impostors);
+std::shared_ptr<const StandIns> stand_ins_of(const std::shared_ptr<SceneImpostors>& impostors);
 
 }  // namespace softfocus

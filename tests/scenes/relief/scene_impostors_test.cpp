@@ -152,6 +152,31 @@ TEST_CASE("what the eye is near to, what has no memory, and what is cheap is dra
   CHECK(dearer.impostors->counts.as_geometry == 3);
 }
 
+TEST_CASE("impostors as far as the background, with too strict a tolerance, or of no view") {
+  // A half holds no depth beyond 65,504 m: there the background is no farther than anything.
+  Hall far{ImpostorUse::wherever_possible};
+  far.scene.camera.position_keys = {};
+  far.scene.camera.position = {0.0, 0.0, 100'000.0};
+  far.scene.camera.near_m = 100.0;
+  far.scene.camera.far_m = 400'000.0;
+  for (Object& object : far.scene.objects) object.scale = glm::dvec3{10'000.0};
+  CHECK(hash_image(far.drawn(0.0)) == hash_image(far.redrawn(0.0)));
+  Hall strict{ImpostorUse::wherever_possible};
+  strict.scene.impostors.tolerance_px = 1e-3;
+  CHECK(hash_image(strict.drawn(0.0)) == hash_image(strict.redrawn(0.0)));
+  // The parts of a model are one impostor.
+  Hall joined{ImpostorUse::wherever_possible};
+  for (Object& object : joined.scene.objects) object.model = 7;
+  joined.drawn(0.0);
+  CHECK(joined.impostors->objects.size() == 1);
+  // A still camera's time does not hang on the tolerance.
+  Hall still{ImpostorUse::wherever_possible};
+  still.scene.camera.position_keys = {};
+  still.scene.impostors.milliseconds = 1e-3;
+  still.drawn(0.0);
+  CHECK(still.impostors->counts.tolerance_px == still.scene.impostors.tolerance_px);
+}
+
 TEST_CASE("transparent objects, moving ones and those with shaders are no impostors") {
   Hall with{ImpostorUse::wherever_possible};
   with.scene.materials[1].opacity = 0.5f;

@@ -2,10 +2,12 @@
 
 #include <doctest/doctest.h>
 
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "raster/images/texel.h"
 #include "tests/support/cli_refused.h"
+#include "tests/support/skip.h"
 #include "tools/pictures/image_file.h"
 
 using namespace softfocus;
@@ -91,6 +93,27 @@ TEST_CASE("relief walk draws a scene with its impostors and without") {
   const ProgramRun refused = run_program({"relief", "walk", scene, "--tolerance", "4"});
   CHECK(refused.status == 2);
   CHECK(contains(refused.err, "--tolerance: relief walk does not read it"));
+}
+
+TEST_CASE("the wood of docs/examples is a scene whose trees are impostors") {
+  if (std::system("python3 --version >/dev/null 2>&1") != 0) return skip("numpy", "no python3");
+  const TemporaryDirectory folder;
+  const std::string script = "python3 " SOFTFOCUS_TEST_DATA "/../../docs/examples/wood.py " +
+                             folder.file("wood") + " 6 0.3";
+  REQUIRE(std::system(script.c_str()) == 0);
+  const ProgramRun run =
+      run_program({"relief", "walk", folder.file("wood") + "/wood.toml", "--frames", "4", "--every",
+                   "2", "--size", "96x96", "--json"});
+  CHECK(run.err == "");
+  REQUIRE(run.status == 0);
+  const json found = json::parse(run.out);
+  CHECK(found.at("triangles") > 20000);
+  for (const json& point : found.at("curve")) {
+    const int all = point.at("shown").get<int>() + point.at("as_geometry").get<int>() +
+                    point.at("out_of_view").get<int>();
+    CHECK(all == 6);
+  }
+  CHECK(found.at("impostors").at("most_flip") < 0.03);
 }
 
 TEST_CASE("relief bench and turn say what they measured") {

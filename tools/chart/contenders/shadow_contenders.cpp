@@ -109,7 +109,7 @@ void ShadowContenders::prepare(const ChartEntry& entry) {
 }
 
 void ShadowContenders::draw(Image& picture) {
-  if (!keeps_) prepared_->shadows->frame.reset();
+  forget(*prepared_->shadows, !keeps_);
   draw_scene(*prepared_, chart_.view, chart_.frame, picture, pool_);
 }
 

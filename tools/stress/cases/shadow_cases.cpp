@@ -88,7 +88,7 @@ StressTrial trial_of(Scene scene, int size_px, ThreadPool& pool) {
   frame.sharp = make_image(Format::rgba16f, size_px, size_px);
   draw_scene(prepared, with.camera, 0.0, frame.sharp, pool);
   prepared.shadows->by_rays = true;
-  prepared.shadows->frame.reset();
+  forget(*prepared.shadows, true);
   frame.truth = make_image(Format::rgba16f, size_px, size_px);
   draw_scene(prepared, with.camera, 0.0, frame.truth, pool);
   frame.scene = std::move(with);
