@@ -86,14 +86,16 @@ glm::vec3 texel_at(const RayMesh& mesh, const Texture& texture, const Sampler& s
 
 }  // namespace
 
-std::vector<RayMesh> ray_meshes(const Scene& scene, const CameraMatrices& camera, double frame) {
+std::vector<RayMesh> ray_meshes(const Scene& scene, const CameraMatrices& camera, double frame,
+                                std::span<const Material> materials) {
   std::vector<RayMesh> meshes;
-  const std::vector<SurfaceDraw> draws = surface_draws(scene, camera, frame);
+  std::vector<SurfaceDraw> draws = surface_draws(scene, camera, frame);
   for (std::size_t i = 0; i < draws.size(); ++i) {
     if (draws[i].shaders != nullptr) {
       throw std::runtime_error("rays cannot shade material '" + draws[i].input.material->name +
                                "', which has shaders of its own; accumulation draws it");
     }
+    if (!materials.empty()) draws[i].input.material = &materials[scene.objects[i].material];
     meshes.push_back(ray_mesh(draws[i], camera.world_to_eye, scene.objects[i], frame));
   }
   return meshes;

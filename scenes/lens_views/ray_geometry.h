@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
 #include "raster/numbers/profile.h"
@@ -25,7 +26,9 @@ struct RayMesh {
   std::vector<glm::vec3> base[2];
 };
 
-std::vector<RayMesh> ray_meshes(const Scene& scene, const CameraMatrices& camera, double frame);
+/// `materials`, if any, stand for the scene's, and must outlive the result.
+std::vector<RayMesh> ray_meshes(const Scene& scene, const CameraMatrices& camera, double frame,
+                                std::span<const Material> materials = {});
 
 /// From a point of the lens through one of the plane in focus; z of the direction is -1, so
 /// that the distance along the ray is the depth in metres.

@@ -280,11 +280,14 @@ void read_relief(ReliefMaker& maker, const ReliefForm& form, glm::dvec3 eye, Rel
       }
     }
   });
-  if (!form.unlit) return;
+  if (form.unlit) keep_unlit(relief, *maker.scene);
+}
+
+void keep_unlit(ReliefTexture& relief, const Scene& scene) {
   relief.unlit = relief.colours;
   relief.materials.clear();
-  relief.materials.reserve(maker.scene->materials.size());
-  for (const Material& material : maker.scene->materials) {
+  relief.materials.reserve(scene.materials.size());
+  for (const Material& material : scene.materials) {
     relief.materials.push_back(relief_material(material));
   }
 }

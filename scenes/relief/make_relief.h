@@ -95,6 +95,10 @@ void draw_relief_part(ReliefMaker& maker, const ReliefTexture& relief, const Rel
 void read_relief(ReliefMaker& maker, const ReliefForm& form, glm::dvec3 eye, ReliefTexture& relief,
                  ThreadPool& pool);
 
+/// Makes a relief whose colours are unlit, and whose normals have the materials' numbers, ready for
+/// light_relief().
+void keep_unlit(ReliefTexture& relief, const Scene& scene);
+
 /// The matrices that draw a relief: the texel (x, y) is the pixel (x, y), and the buffer's depth
 /// is d / depth_m. Clip w is 1, or the distance from a perspective camera's eye along f. `eye` is
 /// the one whose highlights are seen.

@@ -1,6 +1,7 @@
 #include "scenes/traced_relief/traced_relief.h"
 
 #include <cmath>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -94,7 +95,8 @@ ReliefTexture trace_relief(const ReliefMaker& maker, const ReliefView& view, con
   relief.colours.assign(texels, 0);
   if (form.with_normals) relief.normals.assign(texels, 0);
   std::vector<RayMesh> meshes = ray_meshes(
-      *maker.scene, relief_matrices(relief.camera, form.width, form.height, view.eye), maker.frame);
+      *maker.scene, relief_matrices(relief.camera, form.width, form.height, view.eye), maker.frame,
+      form.unlit ? std::span<const Material>{maker.unlit} : std::span<const Material>{});
   const EmbreeDevice device = embree_device(kTracer);
   const EmbreeTree tree = embree_tree(device);
   for (RayMesh& mesh : meshes) {
@@ -128,9 +130,12 @@ ReliefTexture trace_relief(const ReliefMaker& maker, const ReliefView& view, con
       if (form.with_normals) {
         relief.normals[at] =
             packed_normal(normal_of(mesh, place, !meets_front(mesh, place.triangle, ray)));
+        const std::uint32_t material = maker.scene->objects[hit.hit.geomID].material;
+        if (form.unlit) relief.normals[at] |= material << 24;
       }
     }
   });
+  if (form.unlit) keep_unlit(relief, *maker.scene);
   return relief;
 }
 

@@ -188,9 +188,6 @@ void check_pairs(const CLI::App& parser, const ReliefOptions& options) {
       throw UsageError(std::string{name} + ": is of a height field; give --height-field too");
     }
   }
-  if (options.traced && options.unlit) {
-    throw UsageError("--unlit: rays make lit reliefs alone; leave out --traced");
-  }
   if (options.action == "turn" && !options.box && is_given(parser, "--texels")) {
     throw UsageError("--texels: an impostor has as many as the view needs; it is of turn --box");
   }

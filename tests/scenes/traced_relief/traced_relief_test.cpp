@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "scenes/make/shapes.h"
+#include "scenes/relief/light_relief.h"
 #include "tests/support/relief_pictures.h"
 #include "tests/support/skip.h"
 
@@ -51,6 +52,33 @@ TEST_CASE("a traced relief differs from a drawn one at outlines and steps alone"
     }
     CHECK(wrong_normals < found.shown / 50);
   }
+}
+
+TEST_CASE("a traced relief that is lit later looks as a drawn one that is") {
+  if (!traced_relief_missing().empty()) return skip("embree", traced_relief_missing());
+  Scene scene = ring_scene();
+  scene.materials[0].specular = {0.5f, 0.4f, 0.3f};
+  scene.materials.emplace_back();
+  scene.materials[1].diffuse = {0.2f, 0.6f, 0.9f};
+  scene.objects.push_back({});
+  scene.objects[1].material = 1;
+  scene.objects[1].position = {0.0, 1.0, 0.0};
+  ThreadPool pool(2);
+  ReliefMaker maker = prepare_relief(scene, 0.0, pool);
+  const ReliefView view{{1.5, 2.0, 3.5}, {0.0, 1.0, 0.0}, ReliefProjection::orthographic};
+  const ReliefForm form{80, 64, 8, true, true};
+  ReliefTexture drawn = make_relief(maker, view, form, pool);
+  ReliefTexture traced = trace_relief(maker, view, form, pool);
+  CHECK(traced.materials.size() == 2);
+  CHECK(relief_differences(drawn, traced).colour_off_step == 0);
+  const std::vector<Light> lights{{LightKind::directional, {-1.0f, 0.5f, 0.2f}, glm::vec3{0.9f}}};
+  for (ReliefTexture* relief : {&drawn, &traced}) {
+    light_relief(*relief, relief_lights(scene.ambient_light, lights), view.eye, pool);
+  }
+  const ReliefDifferences found = relief_differences(drawn, traced);
+  CHECK(found.shown > 2000);
+  CHECK(found.colour_off_step < found.shown / 50);
+  CHECK(traced.colours != traced.unlit);
 }
 
 TEST_CASE("a traced relief has the same bits for any number of threads") {

@@ -194,8 +194,6 @@ TEST_CASE("relief: a picture of heights becomes a relief, with holes where it sa
   const std::string to = folder.file("to.relief");
   check_refused(folder, {"relief", "make", "--height-field", grey, "--colour", small, "-o", to}, 1,
                 {"small.png", "9x9", "20x10"});
-  check_refused(folder, {"relief", "make", "figures", "--traced", "--unlit", "-o", to}, 2,
-                {"--unlit", "--traced"});
   check_refused(folder, {"relief", "make", "figures", "--colour", red, "-o", to}, 2,
                 {"--colour", "--height-field"});
   check_refused(folder, {"relief", "make", "--height-field", grey, "--yaw", "3", "-o", to}, 2,
