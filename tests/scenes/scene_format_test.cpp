@@ -22,6 +22,7 @@ const std::map<std::string, std::string> kScenes{
     {"Top of the file", "%"},
     {"`[camera]`", "[camera]\n%"},
     {"`[lens]`", "[lens]\n%"},
+    {"`[impostors]`", "[impostors]\n%"},
     {"`[[light]]`", "[[light]]\nkind = \"directional\"\ndirection = [0, 1, 0]\n%"},
     {"`map`", "[[light]]\nkind = \"directional\"\ndirection = [0, 1, 0]\n[light.map]\n%"},
     {"`[texture.NAME]`",
@@ -110,7 +111,9 @@ std::vector<double> numbers_of(const Scene& scene) {
   const Camera& camera = scene.camera;
   add_vector(camera.position), add_vector(camera.target), add_vector(camera.up);
   add(camera.fov_y_degrees, camera.near_m, camera.far_m, camera.orbit_degrees_per_frame,
-      camera.shutter_frames);
+      camera.shutter_frames, camera.easing);
+  const ImpostorBudget& impostors = scene.impostors;
+  add(impostors.tolerance_px, impostors.memory_mb, impostors.milliseconds);
   const SceneLens& lens = scene.lens;
   for (const LensNumber& number : kLensNumbers) add(lens.lens.*number.place);
   add(lens.easing, lens.coc_scale, lens.max_coc_px_at_1024);
@@ -131,7 +134,7 @@ std::vector<double> numbers_of(const Scene& scene) {
   for (const Object& object : scene.objects) {
     add_vector(object.position), add_vector(object.rotation_degrees), add_vector(object.scale);
     add_vector(object.spin_degrees_per_frame), add_vector(object.sway);
-    add(object.sway_period_frames, object.sway_phase);
+    add(object.sway_period_frames, object.sway_phase, object.impostor);
   }
   for (const Mesh& mesh : scene.meshes) {
     for (const glm::vec3& position : mesh.positions) add_vector(position);
