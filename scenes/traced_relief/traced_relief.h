@@ -13,9 +13,9 @@ namespace softfocus {
 /// Empty if this build can trace rays, else what is missing.
 std::string_view traced_relief_missing();
 
-/// As make_relief(), by the same camera, unlit too. The same bits for any number of threads, but not on every
-/// machine: Embree's intersections differ in their last bits from one vector unit to the next.
-/// Throws std::runtime_error if Embree is missing or fails.
+/// As make_relief(), by the same camera, unlit too. The same bits for any number of threads, but
+/// not on every machine: Embree's intersections differ in their last bits from one vector unit to
+/// the next. Throws std::runtime_error if Embree is missing or fails.
 ReliefTexture trace_relief(const ReliefMaker& maker, const ReliefView& view, const ReliefForm& form,
                            ThreadPool& pool);
 
