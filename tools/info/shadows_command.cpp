@@ -21,7 +21,7 @@
 #include "tools/cli/timing.h"
 #include "tools/gl/frame_on_gl.h"
 #include "tools/info/shadow_measures.h"
-#include "tools/options/light_options.h"
+#include "tools/options/scene_options.h"
 #include "tools/options/run_options.h"
 
 namespace softfocus {

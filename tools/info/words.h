@@ -18,8 +18,8 @@ struct Word {
 
 std::span<const Word> words();
 
-/// The words with that name. If there is none: those with a name of several words, one of which
-/// begins so. Capitals, hyphens and a plural's s make no difference.
+/// The words with that name. If there is none: those in whose name a word begins with it. Capitals,
+/// hyphens and a plural's s make no difference.
 std::vector<Word> find_words(std::string_view name);
 
 /// A word for a terminal of so many columns.

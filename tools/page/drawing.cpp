@@ -88,6 +88,12 @@ ShotLens asked_lens(const Scene& scene, const FrameSettings& settings) {
 
 namespace {
 
+/// What was prepared of the open scene.
+void forget_scene(Page& page) {
+  page.memory = {};
+  page.gpu_scene.reset();
+}
+
 /// Gives the open scene a look. What was prepared of it stays if a light has moved alone, unless
 /// impostors have its light.
 void set_look(Page& page, const SceneLook& look) {
@@ -106,10 +112,10 @@ void set_look(Page& page, const SceneLook& look) {
     scene.materials = opened.materials;
     scene.objects = opened.objects;
     opened.look = {};
-    page.memory = {};
+    forget_scene(page);
     throw;
   }
-  if (moved != opened.look || has_impostors(scene)) page.memory = {};
+  if (moved != opened.look || has_impostors(scene)) forget_scene(page);
   opened.look = look;
 }
 

@@ -11,7 +11,7 @@
 #include "tools/cli/option_values.h"
 #include "tools/files/json.h"
 #include "tools/options/lens_options.h"
-#include "tools/options/light_options.h"
+#include "tools/options/scene_options.h"
 #include "tools/options/method_options.h"
 #include "tools/render/options.h"
 

@@ -14,7 +14,7 @@
 #include "tools/gl/shaders.h"
 #include "tools/options/effect_options.h"
 #include "tools/options/lens_options.h"
-#include "tools/options/light_options.h"
+#include "tools/options/scene_options.h"
 #include "tools/options/method_options.h"
 #include "tools/options/run_options.h"
 #include "tools/pictures/image_file.h"

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "dof/measure/measures.h"
 #include "raster/images/texel.h"
@@ -117,6 +118,26 @@ TEST_CASE("a frame's impostors do not depend on the frames before, nor on thread
   CHECK(hash_image(scalar.drawn(35)) == in_order[7]);
 }
 
+TEST_CASE("one scene's impostors serve pictures of any size and view, each with its own bits") {
+  Hall with{ImpostorUse::wherever_possible};
+  with.prepare();
+  const auto drawn = [](Hall& hall, int width, int height, double fov_degrees) {
+    if (!hall.prepared) hall.prepare();
+    Camera camera = hall.scene.camera;
+    camera.fov_y_degrees = fov_degrees;
+    Image picture = make_image(Format::rgba16f, width, height);
+    draw_scene(*hall.prepared, camera_matrices(camera, 0.0, width, height), 0.0, picture,
+               hall.pool);
+    return hash_image(picture);
+  };
+  drawn(with, 128, 128, 40.0);
+  for (const auto& [width, height, fov] :
+       {std::tuple{64, 96, 40.0}, std::tuple{200, 100, 40.0}, std::tuple{128, 128, 25.0}}) {
+    Hall alone{ImpostorUse::wherever_possible};
+    CHECK(drawn(with, width, height, fov) == drawn(alone, width, height, fov));
+  }
+}
+
 TEST_CASE("an impostor is renewed when the eye leaves its cell, and recalled when it comes back") {
   Hall with{ImpostorUse::wherever_possible};
   with.drawn(0.0);
@@ -168,7 +189,7 @@ TEST_CASE("impostors as far as the background, with too strict a tolerance, or o
   Hall joined{ImpostorUse::wherever_possible};
   for (Object& object : joined.scene.objects) object.model = 7;
   joined.drawn(0.0);
-  CHECK(joined.impostors->objects.size() == 1);
+  CHECK(joined.impostors->objects.all.size() == 1);
   // A still camera's time does not hang on the tolerance.
   Hall still{ImpostorUse::wherever_possible};
   still.scene.camera.position_keys = {};
@@ -182,11 +203,11 @@ TEST_CASE("transparent objects, moving ones and those with shaders are no impost
   with.scene.materials[1].opacity = 0.5f;
   with.scene.objects[2].material = 2;
   with.drawn(0.0);
-  CHECK(with.impostors->objects.size() == 1);
+  CHECK(with.impostors->objects.all.size() == 1);
   Hall moving{ImpostorUse::wherever_possible};
   moving.scene.objects[1].sway = {0.0, 0.1, 0.0};
   CHECK(hash_image(moving.drawn(3.0)) != hash_image(moving.redrawn(3.0)));
-  CHECK(moving.impostors->objects.size() == 2);
+  CHECK(moving.impostors->objects.all.size() == 2);
 }
 
 TEST_CASE("objects out of view are not drawn, and none that is in view is left out") {
@@ -320,6 +341,19 @@ TEST_CASE("impostors cast shadows and receive them") {
     CHECK(without > 0.03);
     CHECK(with.flip_at(0.0) < 0.02);
     CHECK(with.impostors->counts.shown == 3);
+    // What is out of view casts its shadow, and so does what an impostor stands for.
+    const auto floor_seen_alone = [&](bool hides) {
+      Hall hall{hides ? ImpostorUse::wherever_possible : ImpostorUse::never};
+      hall.scene.meshes[0] = with.scene.meshes[0];
+      set_shadows(hall.scene, kind);
+      hall.scene.camera.position_keys = {};
+      hall.scene.camera.position = {-1.0, 3.0, 1.5};
+      hall.scene.camera.target = {-1.2, 0.0, 0.6};
+      hall.scene.camera.fov_y_degrees = 14.0;
+      return hides ? hall.drawn(0.0) : hall.redrawn(0.0);
+    };
+    CHECK(measure_pictures(floor_seen_alone(false), floor_seen_alone(true), nullptr, {}, with.pool)
+              .whole.flip < 0.02);
     // A relief has the shadows of its frame.
     with.scene.objects.back().sway = {0.5, 0.0, 0.0};
     with.prepared.reset();

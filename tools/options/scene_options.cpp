@@ -1,4 +1,4 @@
-#include "tools/options/light_options.h"
+#include "tools/options/scene_options.h"
 
 #include <algorithm>
 #include <array>
