@@ -193,6 +193,16 @@ TEST_CASE("a camera may be on its way, by frames") {
   CHECK(target_at(looks.camera, 2.0) == glm::dvec3{1.0, 0.0, 0.0});
 }
 
+TEST_CASE("a camera cannot look where its way meets its target, nor along up") {
+  const Scene through = read("[camera]\nposition = [[0, 0, 0, 5], [10, 0, 0, -5]]\n");
+  CHECK(can_look(through.camera, 0.0));
+  CHECK(can_look(through.camera, 4.0));
+  CHECK_FALSE(can_look(through.camera, 5.0));
+  const Scene over = read("[camera]\nposition = [[0, 0, 6, 6], [10, 0, 6, -6]]\n");
+  CHECK(can_look(over.camera, 4.0));
+  CHECK_FALSE(can_look(over.camera, 5.0));
+}
+
 TEST_CASE("a camera's way that cannot be is a complaint") {
   CHECK(complaint("[camera]\nposition = [[5, 0, 1, 5], [5, 2, 1, 3]]\n") ==
         "a.toml:2: camera.position: has frames that do not increase from 0 on; [[0, 0, 1, 5], "

@@ -14,6 +14,7 @@
 #include "scenes/load/load_scene.h"
 #include "scenes/shadows/maps/map_errors.h"
 #include "scenes/shadows/shadow_truth.h"
+#include "tests/support/shadow_scene.h"
 
 using namespace softfocus;
 
@@ -282,5 +283,43 @@ TEST_CASE("a map that is fitted to the scene is drawn once, one fitted to the ca
     camera.eye.x += 0.01;
     draw_scene(made.prepared, camera, kFrame, made.picture, pool);
     CHECK((maps[0].sides[0].nearness[0] == mark) == !fits_camera);
+  }
+}
+
+TEST_CASE("what is kept of shadows changes no bit, whatever moves from frame to frame") {
+  constexpr int kWidth = 96, kHeight = 72;
+  ThreadPool pool{2};
+  for (const ShadowKind kind : {ShadowKind::projected, ShadowKind::volumes, ShadowKind::map}) {
+    CAPTURE(static_cast<int>(kind));
+    for (const double spin : {0.0, 20.0}) {
+      Scene scene = test::shadow_scene(kind);
+      scene.objects[1].spin_degrees_per_frame = {0.0, spin, 0.0};
+      PreparedScene kept = prepare_scene(scene, Profile{}, pool);
+      double frame = 0.0;
+      int step = 0;
+      const auto check = [&] {
+        CAPTURE(step++);
+        const CameraMatrices camera = camera_matrices(scene.camera, frame, kWidth, kHeight);
+        Image own = make_image(Format::rgba16f, kWidth, kHeight);
+        draw_scene(kept, camera, frame, own, pool);
+        const Image right = draw_scene(scene, camera, frame, kWidth, kHeight, Profile{}, pool);
+        CHECK(hash_image(own) == hash_image(right));
+      };
+      check();
+      scene.lights[0].position_or_direction.x -= 0.4f;
+      check();
+      check();
+      scene.lights[1].position_or_direction.z += 0.5f;
+      check();
+      scene.camera.position.x += 0.7;
+      check();
+      frame = 1.0;
+      check();
+      scene.lights[0].position_or_direction.x += 0.4f;
+      scene.camera.position.x -= 0.7;
+      check();
+      frame = 0.0;
+      check();
+    }
   }
 }

@@ -21,8 +21,8 @@
 #include "tools/cli/timing.h"
 #include "tools/gl/frame_on_gl.h"
 #include "tools/info/shadow_measures.h"
-#include "tools/options/scene_options.h"
 #include "tools/options/run_options.h"
+#include "tools/options/scene_options.h"
 
 namespace softfocus {
 namespace {

@@ -11,8 +11,8 @@
 #include "tools/cli/option_values.h"
 #include "tools/files/json.h"
 #include "tools/options/lens_options.h"
-#include "tools/options/scene_options.h"
 #include "tools/options/method_options.h"
+#include "tools/options/scene_options.h"
 #include "tools/render/options.h"
 
 namespace softfocus {

@@ -17,8 +17,8 @@
 #include "scenes/relief/impostors/octahedral_atlas.h"
 #include "tools/cli/errors.h"
 #include "tools/files/findings.h"
-#include "tools/options/scene_options.h"
 #include "tools/options/parameter_options.h"
+#include "tools/options/scene_options.h"
 #include "tools/pictures/picture_file.h"
 
 namespace softfocus {

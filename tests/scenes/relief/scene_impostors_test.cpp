@@ -130,11 +130,16 @@ TEST_CASE("one scene's impostors serve pictures of any size and view, each with 
                hall.pool);
     return hash_image(picture);
   };
-  drawn(with, 128, 128, 40.0);
-  for (const auto& [width, height, fov] :
-       {std::tuple{64, 96, 40.0}, std::tuple{200, 100, 40.0}, std::tuple{128, 128, 25.0}}) {
-    Hall alone{ImpostorUse::wherever_possible};
-    CHECK(drawn(with, width, height, fov) == drawn(alone, width, height, fov));
+  // With few cells as many in each.
+  for (const double tolerance_px : {1.0, 100.0}) {
+    with.scene.impostors.tolerance_px = tolerance_px;
+    drawn(with, 128, 128, 40.0);
+    for (const auto& [width, height, fov] :
+         {std::tuple{64, 96, 40.0}, std::tuple{200, 100, 40.0}, std::tuple{128, 128, 25.0}}) {
+      Hall alone{ImpostorUse::wherever_possible};
+      alone.scene.impostors.tolerance_px = tolerance_px;
+      CHECK(drawn(with, width, height, fov) == drawn(alone, width, height, fov));
+    }
   }
 }
 
@@ -289,24 +294,30 @@ TEST_CASE("impostors have smooth edges where geometry has, and end geometry's be
   };
   CHECK(flip_of(own) < 0.9 * flip_of(parts.opaque));
   // Inside of an impostor there is an edge nowhere.
-  int inside = 0, wrong = 0;
+  int inside = 0, wrong = 0, outlines = 0;
   for (int y = 1; y + 1 < kSize; ++y) {
     for (int x = 1; x + 1 < kSize; ++x) {
-      const auto is_torus = [&](int at_x, int at_y) {
-        const glm::vec4 texel = load_texel(parts.opaque, at_x, at_y);
+      const auto shows_torus = [](const Image& picture, int at_x, int at_y) {
+        const glm::vec4 texel = load_texel(picture, at_x, at_y);
         return texel.x > texel.z + 0.1f;
       };
+      const auto is_torus = [&](int at_x, int at_y) {
+        return shows_torus(parts.opaque, at_x, at_y);
+      };
+      const std::uint8_t coverage =
+          row<std::uint8_t>(parts.edges.coverage, y)[static_cast<std::size_t>(x)];
+      const bool is_outline = is_torus(x, y) != shows_torus(parts.edges.other, x, y);
+      outlines += is_outline && coverage > 16 && coverage < 128 ? 1 : 0;
       if (!is_torus(x, y) || !is_torus(x - 1, y) || !is_torus(x + 1, y) || !is_torus(x, y - 1) ||
           !is_torus(x, y + 1)) {
         continue;
       }
       ++inside;
-      const std::uint8_t coverage =
-          row<std::uint8_t>(parts.edges.coverage, y)[static_cast<std::size_t>(x)];
       wrong += coverage > 128 ? 1 : 0;
     }
   }
   CHECK(inside > 200);
+  CHECK(outlines > 100);
   CHECK(wrong == 0);
 }
 
@@ -356,10 +367,14 @@ TEST_CASE("impostors cast shadows and receive them") {
               .whole.flip < 0.02);
     // A relief has the shadows of its frame.
     with.scene.objects.back().sway = {0.5, 0.0, 0.0};
+    with.scene.camera.position_keys = {};
     with.prepared.reset();
     CHECK(with.flip_at(0.0) < 0.02);
-    CHECK(with.flip_at(25.0) < 0.02);
+    const std::uint64_t after_another = hash_image(with.drawn(25.0));
     CHECK(with.impostors->counts.renewed == 3);
+    with.prepared.reset();
+    CHECK(hash_image(with.drawn(25.0)) == after_another);
+    CHECK(with.flip_at(25.0) < 0.02);
   }
 }
 
@@ -384,8 +399,10 @@ TEST_CASE("views of the lens are drawn with impostors") {
       return method.render(input, with.pool).picture;
     };
     const Image own = seen(with.prepared->stand_ins), right = seen({});
-    CHECK(hash_image(own) != hash_image(right));
-    CHECK(measure_pictures(right, own, nullptr, {}, with.pool).whole.flip < 0.02);
+    // Alpha is the pinhole's, which differs in any case; colours do where views have impostors.
+    const double flip = measure_pictures(right, own, nullptr, {}, with.pool).whole.flip;
+    CHECK(flip > 0.0);
+    CHECK(flip < 0.02);
   }
   // From beside, through a picture whose middle is aside: in focus nothing moves.
   const CameraMatrices beside = lens_camera(camera, {0.3, -0.2}, 7.0, {0.3, 0.2}, kSize, kSize);

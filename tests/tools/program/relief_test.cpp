@@ -53,6 +53,22 @@ TEST_CASE("relief: a scene's relief is made, shown and warped") {
   CHECK(hash_image(read_image_file(first).image) == hash_image(read_image_file(second).image));
 }
 
+TEST_CASE("a camera that meets its target on its way is refused at that frame alone") {
+  const TemporaryDirectory folder;
+  const std::string scene = folder.file("through.toml");
+  write_file(scene,
+             "[camera]\nposition = [[0, 0, 0, 5], [10, 0, 0, -5]]\n[material.m]\n"
+             "[[object]]\nshape = \"cube\"\nmaterial = \"m\"\n");
+  const auto at = [&](const char* frame) {
+    return run_program({"render", scene, "--frame", frame, "--size", "16x16", "--show", "pinhole",
+                        "-o", folder.file("a.npy")});
+  };
+  CHECK(at("4").status == 0);
+  const ProgramRun refused = at("5");
+  CHECK(refused.status == 2);
+  CHECK(contains(refused.err, "frame 5: the camera of '" + scene + "' stands at its target"));
+}
+
 TEST_CASE("relief walk draws a scene with its impostors and without") {
   const TemporaryDirectory folder;
   write_file(folder.file("walk.toml"),
