@@ -21,7 +21,6 @@ namespace softfocus {
 namespace {
 
 constexpr int kUnmixedRows = 8;
-constexpr float kLargestHalf = 65504.0f;
 
 struct Step {
   int x, y;
@@ -34,7 +33,7 @@ constexpr std::array<Step, 8> kAcross{
 constexpr int kPureReach = 2;
 
 /// The picture as it came.
-struct Source {
+struct MixedPicture {
   int width, height;
   std::vector<glm::vec3> colours;
   std::vector<float> inverse_depths;  ///< in which planes are linear
@@ -58,8 +57,8 @@ struct Source {
   }
 };
 
-Source source_of(const ConstImageView& scene, ThreadPool& pool) {
-  Source source{scene.width, scene.height, {}, {}, {}};
+MixedPicture source_of(const ConstImageView& scene, ThreadPool& pool) {
+  MixedPicture source{scene.width, scene.height, {}, {}, {}};
   const std::size_t pixels = source.at(0, scene.height);
   source.colours.resize(pixels);
   source.inverse_depths.resize(pixels);
@@ -86,7 +85,7 @@ Source source_of(const ConstImageView& scene, ThreadPool& pool) {
 /// Calls `visit` with the place of each pixel that a surface's colour is taken from, and the square
 /// of its distance.
 template <class Visit>
-void for_each_around(const Source& source, int x, int y, const Visit& visit) {
+void for_each_around(const MixedPicture& source, int x, int y, const Visit& visit) {
   for (int dy = -kPureReach; dy <= kPureReach; ++dy) {
     for (int dx = -kPureReach; dx <= kPureReach; ++dx) {
       if (source.has(x + dx, y + dy)) visit(source.at(x + dx, y + dy), dx * dx + dy * dy);
@@ -100,7 +99,7 @@ struct SurfaceColour {
 };
 
 /// A surface around a pixel, as it shows where it has no edge, nearer pixels for more.
-std::optional<SurfaceColour> pure_colour(const Source& source, int x, int y, float surface,
+std::optional<SurfaceColour> pure_colour(const MixedPicture& source, int x, int y, float surface,
                                          float other) {
   // A quarter of the way to the other is still this one.
   const float most = 0.25f * std::fabs(surface - other);
@@ -122,8 +121,9 @@ std::optional<SurfaceColour> pure_colour(const Source& source, int x, int y, flo
 /// A surface that shows nowhere without a mixture: the light that it adds to another's, over the
 /// pixels that have its depth, which are as many as its area is in the mean. None if the other's
 /// texture could be that light.
-std::optional<SurfaceColour> colour_by_light(const Source& source, int x, int y, float surface,
-                                             const SurfaceColour& other, float other_inverse) {
+std::optional<SurfaceColour> colour_by_light(const MixedPicture& source, int x, int y,
+                                             float surface, const SurfaceColour& other,
+                                             float other_inverse) {
   const float border = 0.5f * (surface + other_inverse);
   glm::vec3 light{};
   float pixels = 0.0f, area = 0.0f;
@@ -141,8 +141,8 @@ std::optional<SurfaceColour> colour_by_light(const Source& source, int x, int y,
 }
 
 /// The colours of two surfaces around a pixel. None if neither shows without a mixture.
-std::optional<std::pair<SurfaceColour, SurfaceColour>> colours_around(const Source& source, int x,
-                                                                      int y, float own,
+std::optional<std::pair<SurfaceColour, SurfaceColour>> colours_around(const MixedPicture& source,
+                                                                      int x, int y, float own,
                                                                       float other) {
   auto own_colour = pure_colour(source, x, y, own, other);
   auto other_colour = pure_colour(source, x, y, other, own);
@@ -156,7 +156,7 @@ std::optional<std::pair<SurfaceColour, SurfaceColour>> colours_around(const Sour
 }
 
 /// The part of a pixel that another surface has by the depths of its neighbours.
-float part_by_depth(const Source& source, int x, int y, float other) {
+float part_by_depth(const MixedPicture& source, int x, int y, float other) {
   const float own = source.inverse_depths[source.at(x, y)];
   const float border = 0.5f * (own + other);
   float sum = 0.0f, weights = 4.0f;
@@ -211,7 +211,7 @@ bool share_rest(const glm::vec3& colour, const SurfaceColour& own, const Surface
   return true;
 }
 
-std::optional<TwoSurfaces> take_apart(const Source& source, int x, int y, float other) {
+std::optional<TwoSurfaces> take_apart(const MixedPicture& source, int x, int y, float other) {
   const auto colours = colours_around(source, x, y, source.inverse_depths[source.at(x, y)], other);
   if (!colours) return {};
   auto [mine, its] = *colours;
@@ -244,7 +244,7 @@ std::optional<TwoSurfaces> take_apart(const Source& source, int x, int y, float 
 }
 
 /// A pixel with a nearer or a farther surface across an edge: that which explains its colour best.
-std::optional<TwoSurfaces> two_surfaces(const Source& source, int x, int y) {
+std::optional<TwoSurfaces> two_surfaces(const MixedPicture& source, int x, int y) {
   const float own = source.inverse_depths[source.at(x, y)];
   std::optional<TwoSurfaces> best;
   for (const bool nearer : {true, false}) {
@@ -282,7 +282,7 @@ void soften(TwoSurfaces& found, const glm::vec3& colour, float part) {
 UnmixedEdges unmix_edges(const ImageView& scene, const DofSettings& settings,
                          const Profile& profile, ThreadPool& pool) {
   const DefaultFloatEnvironment environment;
-  const Source source = source_of(scene, pool);
+  const MixedPicture source = source_of(scene, pool);
   struct Taken {
     int x;
     TwoSurfaces surfaces;

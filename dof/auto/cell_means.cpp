@@ -14,8 +14,6 @@
 namespace softfocus {
 namespace {
 
-constexpr float kLargestHalf = 65504.0f;
-
 /// Sums down the columns of pixels: planes of red, green, blue and radius; and the brightest.
 struct ColumnSums {
   std::size_t width;

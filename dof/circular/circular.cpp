@@ -51,7 +51,7 @@ constexpr float kCircularCut[] = {1.2f / 1.085f, 1.2f / 1.11f};
 namespace softfocus {
 namespace {
 
-constexpr int kTaskRows = 8;
+constexpr int kCircularTaskRows = 8;
 
 struct ComplexGaussian {
   double a, b, real_factor, imaginary_factor;
@@ -82,17 +82,17 @@ Table make_table(const ComplexGaussian& gaussian, double edge, float largest_px)
 }
 
 // A field's places in HalfFields: colour, size and weight or opacity.
-struct Field {
+struct CircularField {
   bool near;
   int colour, size, share;
   int values() const { return near ? 4 : 3; }
   // Between the passes: complex values, the size, and of the far field the size that counts.
   int planes(int components) const { return 2 * values() * components + (near ? 1 : 2); }
 };
-constexpr Field kFar{false, kFarColour, kFarSize, kFarWeight};
-constexpr Field kNear{true, kNearColour, kNearSize, kNearOpacity};
+constexpr CircularField kFarField{false, kFarColour, kFarSize, kFarWeight};
+constexpr CircularField kNearField{true, kNearColour, kNearSize, kNearOpacity};
 
-struct RowScratch {
+struct CircularScratch {
   std::vector<float> values;
   std::vector<const float*> taps;
 };
@@ -110,7 +110,7 @@ struct Circular {
 
 // Runs of cells in a row of tiles that the field reaches; the others are cleared.
 template <class Blur>
-void for_each_run(const Circular& all, Field field, int y, float* to, std::ptrdiff_t plane,
+void for_each_run(const Circular& all, CircularField field, int y, float* to, std::ptrdiff_t plane,
                   int planes, const Blur& blur) {
   if (!field.near) return blur(0, all.columns());
   const auto reached = [&](int column) {
@@ -129,7 +129,7 @@ void for_each_run(const Circular& all, Field field, int y, float* to, std::ptrdi
 }
 
 // A row of the field with its ends repeated for `reach` cells and two vectors.
-void pad_row(const Circular& all, Field field, int y, std::ptrdiff_t padded, float* to) {
+void pad_row(const Circular& all, CircularField field, int y, std::ptrdiff_t padded, float* to) {
   const int reach = all.pattern.reach, width = all.columns();
   const Planes& cells = all.fields.cells;
   const auto repeat_ends = [&](float* row) {
@@ -151,7 +151,8 @@ void pad_row(const Circular& all, Field field, int y, std::ptrdiff_t padded, flo
   repeat_ends(counts);
 }
 
-void blur_across(const Circular& all, Field field, int y, RowScratch& scratch, Isa isa) {
+void blur_across(const Circular& all, CircularField field, int y, CircularScratch& scratch,
+                 Isa isa) {
   const int reach = all.pattern.reach;
   const std::ptrdiff_t padded = all.columns() + 2 * reach + 2 * kMostLanes;
   scratch.values.resize(static_cast<std::size_t>(5 * padded));
@@ -173,7 +174,7 @@ void blur_across(const Circular& all, Field field, int y, RowScratch& scratch, I
   for_each_run(all, field, y, to, all.across.plane, field.planes(all.components), blur);
 }
 
-void blur_down(const Circular& all, Field field, int y, RowScratch& scratch, Isa isa) {
+void blur_down(const Circular& all, CircularField field, int y, CircularScratch& scratch, Isa isa) {
   const int reach = all.pattern.reach;
   scratch.taps.resize(static_cast<std::size_t>(2 * reach + 1));
   Planes& cells = all.fields.cells;
@@ -196,11 +197,11 @@ void blur_down(const Circular& all, Field field, int y, RowScratch& scratch, Isa
   for_each_run(all, field, y, to, cells.plane, 0, blur);
 }
 
-void blur_field(const Circular& all, Field field, ThreadPool& pool) {
+void blur_field(const Circular& all, CircularField field, ThreadPool& pool) {
   for (const auto blur : {blur_across, blur_down}) {
-    for_each_row_with<RowScratch>(pool, all.rows(), kTaskRows, [&](int y, auto& scratch) {
-      blur(all, field, y, scratch, pool.isa());
-    });
+    for_each_row_with<CircularScratch>(
+        pool, all.rows(), kCircularTaskRows,
+        [&](int y, auto& scratch) { blur(all, field, y, scratch, pool.isa()); });
   }
 }
 
@@ -224,12 +225,12 @@ void circular(const DofInput& input, const ImageView& result, int components, Th
   pattern.reach = static_cast<int>(largest * cut + 0.5f);
   // One after the other, the fields share the memory between the passes.
   const Planes& cells = fields.cells;
-  const int planes = (fields.near_field ? kNear : kFar).planes(components);
+  const int planes = (fields.near_field ? kNearField : kFarField).planes(components);
   Planes across =
-      make_planes(std::max(planes, kFar.planes(components)), cells.width, cells.height, pool);
+      make_planes(std::max(planes, kFarField.planes(components)), cells.width, cells.height, pool);
   const Circular all{fields, tiles, pattern, components, across};
-  blur_field(all, kFar, pool);
-  if (fields.near_field) blur_field(all, kNear, pool);
+  blur_field(all, kFarField, pool);
+  if (fields.near_field) blur_field(all, kNearField, pool);
   merge_fields(input, fields, result, pool);
 }
 

@@ -34,7 +34,6 @@ namespace softfocus {
 namespace {
 
 constexpr double kDiscsPerPixel = 32;  // steps of the discs' radii
-constexpr float kLargestHalf = 65504.0f;
 
 // The light of blocks of 16, 32, ... pixels.
 struct LightBlocks {
@@ -155,7 +154,7 @@ float mean_around(const LightBlocks& blocks, float size, int x, int y) {
   return (1.0f - below) * upper + below * lower;
 }
 
-struct Highlight {
+struct DiscHighlight {
   int x, y;
   float radius_px;                    // negative before the focus
   std::array<float, 3> light;         // taken out
@@ -205,7 +204,7 @@ std::uint32_t bright_pixels(const DofInput& input, int x, int y, const LightRow&
 }
 
 void find_in_span(const DofInput& input, const std::vector<LightBlocks>& levels, int y, int left,
-                  std::uint32_t bright, std::vector<Highlight>& found) {
+                  std::uint32_t bright, std::vector<DiscHighlight>& found) {
   const std::uint16_t* from = row<std::uint16_t>(input.scene, y).data();
   for (; bright != 0; bright &= bright - 1) {
     const int x = left + std::countr_zero(bright);
@@ -214,7 +213,7 @@ void find_in_span(const DofInput& input, const std::vector<LightBlocks>& levels,
     const float radius = split_texel(input, x, y).radius_px;
     const float part = highlight_part(levels, radius, light, x, y);
     if (!(part > 0.0f)) continue;
-    Highlight highlight{x, y, radius, {}, {}};
+    DiscHighlight highlight{x, y, radius, {}, {}};
     for (std::size_t i = 0; i < 3; ++i) {
       const float value = half_to_float(texel[i]), lit = light_of(value);
       highlight.rest[i] =
@@ -227,7 +226,7 @@ void find_in_span(const DofInput& input, const std::vector<LightBlocks>& levels,
 }
 
 // Row by row.
-std::vector<std::vector<Highlight>> find_by_blocks(const DofInput& input, ThreadPool& pool) {
+std::vector<std::vector<DiscHighlight>> find_by_blocks(const DofInput& input, ThreadPool& pool) {
   std::vector<LightBlocks> levels{finest_blocks(input, pool)};
   for (int size = kLightBlock; static_cast<float>(size) < input.settings.max_coc_px; size *= 2) {
     levels.push_back(next_blocks(levels.back()));
@@ -235,7 +234,7 @@ std::vector<std::vector<Highlight>> find_by_blocks(const DofInput& input, Thread
   for (LightBlocks& blocks : levels) find_means(blocks);
   find_least(levels);
   const LightBlocks& blocks = levels[0];
-  std::vector<std::vector<Highlight>> found(static_cast<std::size_t>(blocks.rows));
+  std::vector<std::vector<DiscHighlight>> found(static_cast<std::size_t>(blocks.rows));
   pool.for_each(blocks.rows, [&](int block_row) {
     const int top = block_row * kLightBlock;
     const int end = std::min(top + kLightBlock, input.scene.height);
@@ -253,11 +252,11 @@ std::vector<std::vector<Highlight>> find_by_blocks(const DofInput& input, Thread
   return found;
 }
 
-Image without(const DofInput& input, const std::vector<std::vector<Highlight>>& found,
+Image without(const DofInput& input, const std::vector<std::vector<DiscHighlight>>& found,
               ThreadPool& pool) {
   Image rest = copy_of(input.scene, pool);
   pool.for_each(static_cast<int>(found.size()), [&](int block_row) {
-    for (const Highlight& highlight : found[static_cast<std::size_t>(block_row)]) {
+    for (const DiscHighlight& highlight : found[static_cast<std::size_t>(block_row)]) {
       std::copy(highlight.rest.begin(), highlight.rest.end(),
                 row<std::uint16_t>(rest, highlight.y).begin() + 4 * highlight.x);
     }
@@ -322,7 +321,7 @@ void add_part(const LitPart& part, int reach, LitRung& rung) {
   rung.blocks[static_cast<std::size_t>(row * rung.block_columns + column)] = 1;
 }
 
-void add_highlight(const Highlight& highlight, std::uint32_t disc, AllRungs& all) {
+void add_highlight(const DiscHighlight& highlight, std::uint32_t disc, AllRungs& all) {
   const float square = highlight.radius_px * highlight.radius_px;
   const int reach = static_cast<int>(std::fabs(highlight.radius_px)) + 2;
   for (std::size_t i = 1; i + 1 < all.steps.size(); ++i) {
@@ -385,15 +384,15 @@ ExactDisc exact_disc(double radius_px) {
 DiscHighlights find_highlights(const DofInput& input, const std::vector<LevelRungs>& ladder,
                                ThreadPool& pool) {
   DiscHighlights result;
-  const std::vector<std::vector<Highlight>> found = find_by_blocks(input, pool);
-  const auto none = [](const std::vector<Highlight>& row) { return row.empty(); };
+  const std::vector<std::vector<DiscHighlight>> found = find_by_blocks(input, pool);
+  const auto none = [](const std::vector<DiscHighlight>& row) { return row.empty(); };
   if (std::all_of(found.begin(), found.end(), none)) return result;
   result.rest = without(input, found, pool);
   const auto steps = static_cast<std::size_t>(std::ceil(input.settings.max_coc_px * 32.0f)) + 2;
   DiscNumbers numbers{std::vector<std::int32_t>(steps, -1), {}};
   AllRungs all = all_rungs(ladder, input.scene.width, input.scene.height);
-  for (const std::vector<Highlight>& rows : found) {
-    for (const Highlight& highlight : rows) {
+  for (const std::vector<DiscHighlight>& rows : found) {
+    for (const DiscHighlight& highlight : rows) {
       add_highlight(highlight, numbers.of(highlight.radius_px), all);
     }
   }

@@ -16,7 +16,7 @@
 namespace softfocus {
 namespace {
 
-struct Workspace {
+struct DiscWorkspace {
   SeenTile tile;
   DiscScratch scratch;
   // Level 0: colours and signed squares of what is seen, then of what is hidden.
@@ -29,7 +29,7 @@ struct Workspace {
   LitSums lit_sums;
 };
 
-struct Frame {
+struct DiscFrame {
   const DofInput& input;
   const HiddenPicture& hidden;
   const std::vector<LevelRungs>& ladder;
@@ -105,7 +105,7 @@ bool split_hidden_row(const DofInput& behind, const HiddenPicture& hidden, int t
 }
 
 // Splits a tile's part of the picture, with `apron` more rows above and below.
-void split_tile(const Frame& frame, const LevelRectangle& at, int apron, Workspace& work) {
+void split_tile(const DiscFrame& frame, const LevelRectangle& at, int apron, DiscWorkspace& work) {
   constexpr int kAhead = 4;  // rows
   const int last = frame.levels[0].height - 1;
   DofInput behind = frame.input;
@@ -158,8 +158,8 @@ DiscPart part_reached(const Rung& rung, std::size_t number, const DiscRungBlocks
 }
 
 // Sums a rung's discs in a part of a tile.
-void blur_rung(const Frame& frame, std::size_t level, DiscSide side, std::size_t number,
-               const LevelRectangle& at, const DiscPart& part, Workspace& work) {
+void blur_rung(const DiscFrame& frame, std::size_t level, DiscSide side, std::size_t number,
+               const LevelRectangle& at, const DiscPart& part, DiscWorkspace& work) {
   const LevelRungs& rungs = frame.ladder[level];
   const Rung& rung = rungs.rungs[number];
   const DiscLevel& picture = frame.levels[level];
@@ -197,7 +197,7 @@ bool is_lit(const LitRung& rung, std::size_t level, const LevelRectangle& at) {
   return lit_near(rung, level, at.x, at.y, at.width, at.height);
 }
 
-bool Frame::any_lit(std::size_t level, int side, const LevelRectangle& at) const {
+bool DiscFrame::any_lit(std::size_t level, int side, const LevelRectangle& at) const {
   for (const LitRung& rung : highlights.rungs) {
     if (rung.side == side && rung.level >= level && is_lit(rung, level, at)) return true;
   }
@@ -205,7 +205,8 @@ bool Frame::any_lit(std::size_t level, int side, const LevelRectangle& at) const
 }
 
 // A level's rungs that have highlights there, a bit each.
-std::uint32_t lit_rungs(const Frame& frame, std::size_t level, int side, const LevelRectangle& at) {
+std::uint32_t lit_rungs(const DiscFrame& frame, std::size_t level, int side,
+                        const LevelRectangle& at) {
   std::uint32_t rungs = 0;
   for (const LitRung& rung : frame.highlights.rungs) {
     if (rung.side != side || rung.level != level || !is_lit(rung, level, at)) continue;
@@ -225,8 +226,8 @@ void enlarge_row(const LevelPlanes& from, int rows, const LevelRectangle& at, in
 }
 
 // Draws a rung's highlights in level 0. In other levels keeps the gain for the level before.
-void use_gain(const Frame& frame, std::size_t level, std::size_t lit, const LevelRectangle& at,
-              Workspace& work) {
+void use_gain(const DiscFrame& frame, std::size_t level, std::size_t lit, const LevelRectangle& at,
+              DiscWorkspace& work) {
   if (level == 0) {
     add_highlights(frame.highlights, frame.highlights.rungs[lit], at.x, at.y, at.width, at.height,
                    work.gain, work.lit_sums, work.lit, frame.isa);
@@ -238,8 +239,8 @@ void use_gain(const Frame& frame, std::size_t level, std::size_t lit, const Leve
 }
 
 // The gains of larger levels' highlights, as far as `around` has any.
-void add_larger_gains(const Frame& frame, std::size_t level, int side, const LevelRectangle& at,
-                      const LevelRectangle& around, Workspace& work) {
+void add_larger_gains(const DiscFrame& frame, std::size_t level, int side, const LevelRectangle& at,
+                      const LevelRectangle& around, DiscWorkspace& work) {
   for (std::size_t i = 0; i < frame.highlights.rungs.size(); ++i) {
     const LitRung& rung = frame.highlights.rungs[i];
     if (rung.side != side || rung.level <= level || !is_lit(rung, level, around)) continue;
@@ -263,8 +264,8 @@ void add_larger_gains(const Frame& frame, std::size_t level, int side, const Lev
 }
 
 // The gain of a rung of this level. Needs its sums, not added yet.
-void add_own_gain(const Frame& frame, std::size_t level, int side, std::size_t number,
-                  const LevelRectangle& at, Workspace& work) {
+void add_own_gain(const DiscFrame& frame, std::size_t level, int side, std::size_t number,
+                  const LevelRectangle& at, DiscWorkspace& work) {
   for (std::size_t i = 0; i < frame.highlights.rungs.size(); ++i) {
     const LitRung& rung = frame.highlights.rungs[i];
     if (rung.side != side || rung.level != level || rung.number != number) continue;
@@ -275,8 +276,8 @@ void add_own_gain(const Frame& frame, std::size_t level, int side, std::size_t n
 }
 
 // Rungs of one side, from the nearest to the farthest.
-void blur_side(const Frame& frame, std::size_t level, DiscSide side, const LevelRectangle& at,
-               Workspace& work) {
+void blur_side(const DiscFrame& frame, std::size_t level, DiscSide side, const LevelRectangle& at,
+               DiscWorkspace& work) {
   const int number = side == DiscSide::near ? 0 : 1;
   const DiscRungBlocks near =
       rung_blocks_near(frame.levels[level], number, at.x, at.y, at.width, at.height);
@@ -295,8 +296,8 @@ void blur_side(const Frame& frame, std::size_t level, DiscSide side, const Level
 }
 
 // Gains of 0 in a tile, for rungs that are lit around it but not in it.
-void clear_gains(const Frame& frame, std::size_t level, int side, const LevelRectangle& at,
-                 const LevelRectangle& around, Workspace& work) {
+void clear_gains(const DiscFrame& frame, std::size_t level, int side, const LevelRectangle& at,
+                 const LevelRectangle& around, DiscWorkspace& work) {
   for (std::size_t i = 0; i < frame.highlights.rungs.size(); ++i) {
     const LitRung& rung = frame.highlights.rungs[i];
     if (rung.side != side || rung.level != level || !is_lit(rung, level, around)) continue;
@@ -306,8 +307,8 @@ void clear_gains(const Frame& frame, std::size_t level, int side, const LevelRec
 }
 
 // Lays a side's rungs behind what is seen of larger levels before the focus.
-void see_side(const Frame& frame, std::size_t level, int side, const LevelRectangle& at,
-              Workspace& work) {
+void see_side(const DiscFrame& frame, std::size_t level, int side, const LevelRectangle& at,
+              DiscWorkspace& work) {
   const LevelRectangle around = around_tile(at);
   clear_gains(frame, level, side, at, around, work);
   if (side == 0) add_larger_gains(frame, level, side, at, around, work);
@@ -315,7 +316,7 @@ void see_side(const Frame& frame, std::size_t level, int side, const LevelRectan
   if (side == 1) add_larger_gains(frame, level, side, at, around, work);
 }
 
-void see_tile(const Frame& frame, const LevelRectangle& at, Workspace& work) {
+void see_tile(const DiscFrame& frame, const LevelRectangle& at, DiscWorkspace& work) {
   const DiscLevel& level = frame.levels[0];
   const std::uint32_t near = rungs_near(level, 0, at.x, at.y, at.width, at.height);
   const std::uint32_t far = rungs_near(level, 1, at.x, at.y, at.width, at.height);
@@ -358,17 +359,18 @@ void blur_discs(const DofInput& input, const ImageView& result, ThreadPool& pool
   const HiddenPicture hidden = find(rest, pool);
   const DiscLevels made = make_disc_levels(rest, hidden, ladder, pool);
   LitGains gains = make_gains(highlights, made.levels, pool.memory());
-  const Frame frame{rest, hidden, ladder, made.levels, highlights, gains, pool.isa()};
-  see_levels<Workspace>(
-      frame, pool, [&](std::size_t level, int side, const LevelRectangle& at, Workspace& work) {
+  const DiscFrame frame{rest, hidden, ladder, made.levels, highlights, gains, pool.isa()};
+  see_levels<DiscWorkspace>(
+      frame, pool, [&](std::size_t level, int side, const LevelRectangle& at, DiscWorkspace& work) {
         see_side(frame, level, side, at, work);
       });
-  for_each_tile<Workspace>(frame.levels[0], pool, [&](const LevelRectangle& at, Workspace& work) {
-    const bool lit = frame.any_lit(0, 0, at) || frame.any_lit(0, 1, at);
-    if (lit) std::memset(&work.lit, 0, sizeof work.lit);
-    see_tile(frame, at, work);
-    store_tile(input, result, at, work.tile, lit ? &work.lit : nullptr, frame.isa);
-  });
+  for_each_tile<DiscWorkspace>(
+      frame.levels[0], pool, [&](const LevelRectangle& at, DiscWorkspace& work) {
+        const bool lit = frame.any_lit(0, 0, at) || frame.any_lit(0, 1, at);
+        if (lit) std::memset(&work.lit, 0, sizeof work.lit);
+        see_tile(frame, at, work);
+        store_tile(input, result, at, work.tile, lit ? &work.lit : nullptr, frame.isa);
+      });
 }
 
 }  // namespace softfocus

@@ -21,9 +21,9 @@ namespace {
 using Pixel = SideGrid::Pixel;
 using Seen = SeenGrid::Pixel;
 
-enum class Side { near, far };
+enum class SlowDiscSide { near, far };
 
-struct Level {
+struct SlowDiscLevel {
   int width, height;
   std::array<SideGrid, 2> sides;  // before the focus, and behind it with what is hidden
   std::array<SeenGrid, 2> seen;
@@ -42,14 +42,14 @@ SideGrid picture_side(const DofInput& input, const ConstImageView& scene) {
   return side;
 }
 
-Level picture_level(const DofInput& input, const HiddenPicture& hidden) {
-  Level level{input.scene.width, input.scene.height, {}, {}, {}};
+SlowDiscLevel picture_level(const DofInput& input, const HiddenPicture& hidden) {
+  SlowDiscLevel level{input.scene.width, input.scene.height, {}, {}, {}};
   level.sides[0] = picture_side(input, input.scene);
   level.sides[1] = hidden.empty() ? level.sides[0] : picture_side(input, hidden.picture);
   return level;
 }
 
-Level halve(const Level& from, bool whole, RungStep beyond, float least) {
+SlowDiscLevel halve(const SlowDiscLevel& from, bool whole, RungStep beyond, float least) {
   const float near = whole ? -1.0f : 1.0f;
   return {(from.width + 1) / 2,
           (from.height + 1) / 2,
@@ -81,9 +81,9 @@ struct Shares {
   float own, seen;
 };
 
-struct Layers {
+struct SlowDiscLayers {
   std::vector<LevelRungs> ladder;
-  std::vector<Level> levels;
+  std::vector<SlowDiscLevel> levels;
   DiscHighlights highlights;
 
   RungStep step_after(std::size_t level, std::size_t rung) const {
@@ -91,29 +91,30 @@ struct Layers {
     return rung + 1 < rungs.rungs.size() ? rungs.rungs[rung + 1].step : rungs.beyond;
   }
 
-  Shares shares(std::size_t level, Side side, std::size_t rung, const Pixel& pixel) const {
+  Shares shares(std::size_t level, SlowDiscSide side, std::size_t rung, const Pixel& pixel) const {
     const RungStep end = step_after(level, rung);
     if (level == 0 && rung == 0) {
       return {1.0f - share_from(end, std::fabs(pixel[kLevelSquare])),
               1.0f - share_from(end, -pixel[kLevelSquare])};
     }
-    const float sign = level == 0 && side == Side::near ? -1.0f : 1.0f;
+    const float sign = level == 0 && side == SlowDiscSide::near ? -1.0f : 1.0f;
     const float square = sign * pixel[kLevelSquare];
     const float begun = share_from(ladder[level].rungs[rung].step, square);
     const float ended = share_from(end, square);
-    return {begun - ended,
-            side == Side::near ? 1.0f - pixel[kLevelWeight] * ended : pixel[kLevelWeight] * begun};
+    return {begun - ended, side == SlowDiscSide::near ? 1.0f - pixel[kLevelWeight] * ended
+                                                      : pixel[kLevelWeight] * begun};
   }
 
-  float sum_of(std::size_t number, Side side, std::size_t rung, int x, int y,
+  float sum_of(std::size_t number, SlowDiscSide side, std::size_t rung, int x, int y,
                std::size_t channel) const {
-    const Level& level = levels[number];
-    const SideGrid& pixels = level.sides[side == Side::near ? 0 : 1];
+    const SlowDiscLevel& level = levels[number];
+    const SideGrid& pixels = level.sides[side == SlowDiscSide::near ? 0 : 1];
     return disc_sum(ladder[number].rungs[rung].spans, x, y, [&](int px, int py) {
       const Pixel& pixel = pixels.at(px, py);
       const Shares of = shares(number, side, rung, pixel);
       const Pixel& behind = level.sides[1].at(px, py);
-      if (number == 0 && side == Side::near && behind[kLevelSquare] != pixel[kLevelSquare]) {
+      if (number == 0 && side == SlowDiscSide::near &&
+          behind[kLevelSquare] != pixel[kLevelSquare]) {
         Pixel moved = behind;
         moved[kLevelSquare] = std::max(moved[kLevelSquare], kLeastHidden);
         const Shares of_hidden = shares(number, side, rung, moved);
@@ -124,7 +125,8 @@ struct Layers {
     });
   }
 
-  void add_rung(std::size_t number, Side side, std::size_t rung, int x, int y, Seen& seen) const {
+  void add_rung(std::size_t number, SlowDiscSide side, std::size_t rung, int x, int y,
+                Seen& seen) const {
     const float own = sum_of(number, side, rung, x, y, kLevelWeight);
     if (own == 0.0f) return;
     const float scale = seen[3] / sum_of(number, side, rung, x, y, kLevelSquare);
@@ -135,49 +137,50 @@ struct Layers {
   }
 
   // How much of a rung's highlights is seen behind what is seen so far.
-  float gain_of(std::size_t number, Side side, std::size_t rung, int x, int y,
+  float gain_of(std::size_t number, SlowDiscSide side, std::size_t rung, int x, int y,
                 const Seen& seen) const {
     const float open = seen[3] * ladder[number].rungs[rung].area;
     if (!(open > 0.0f)) return 0.0f;
-    const float most = most_gain(number, side == Side::near ? 0 : 1);
+    const float most = most_gain(number, side == SlowDiscSide::near ? 0 : 1);
     return open / std::max(sum_of(number, side, rung, x, y, kLevelSquare), open * (1.0f / most));
   }
 
-  void set_own_gains(std::size_t level, Side side, std::size_t rung, int x, int y,
+  void set_own_gains(std::size_t level, SlowDiscSide side, std::size_t rung, int x, int y,
                      const Seen& seen) {
     for (std::size_t i = 0; i < highlights.rungs.size(); ++i) {
       const LitRung& lit = highlights.rungs[i];
-      if (lit.level != level || lit.number != rung || lit.side != (side == Side::near ? 0 : 1)) {
+      if (lit.level != level || lit.number != rung ||
+          lit.side != (side == SlowDiscSide::near ? 0 : 1)) {
         continue;
       }
       levels[level].gains[i].at(x, y) = {gain_of(level, side, rung, x, y, seen)};
     }
   }
 
-  void set_larger_gains(std::size_t number, Side side, int x, int y, float open) {
-    Level& level = levels[number];
+  void set_larger_gains(std::size_t number, SlowDiscSide side, int x, int y, float open) {
+    SlowDiscLevel& level = levels[number];
     for (std::size_t i = 0; i < highlights.rungs.size(); ++i) {
       const LitRung& lit = highlights.rungs[i];
-      if (lit.level <= number || lit.side != (side == Side::near ? 0 : 1)) continue;
+      if (lit.level <= number || lit.side != (side == SlowDiscSide::near ? 0 : 1)) continue;
       const float gain = enlarged(levels[number + 1].gains[i], x, y)[0];
       level.gains[i].at(
-          x, y) = {side == Side::near ? gain : std::min(open * gain, most_gain(number, 1))};
+          x, y) = {side == SlowDiscSide::near ? gain : std::min(open * gain, most_gain(number, 1))};
     }
   }
 
   void add_near(std::size_t level, int x, int y, Seen& seen) {
-    set_larger_gains(level, Side::near, x, y, 1.0f);
+    set_larger_gains(level, SlowDiscSide::near, x, y, 1.0f);
     for (std::size_t i = ladder[level].rungs.size(); i-- > (level == 0 ? 1u : 0u);) {
-      set_own_gains(level, Side::near, i, x, y, seen);
-      add_rung(level, Side::near, i, x, y, seen);
+      set_own_gains(level, SlowDiscSide::near, i, x, y, seen);
+      add_rung(level, SlowDiscSide::near, i, x, y, seen);
     }
   }
   void add_far(std::size_t level, int x, int y, Seen& seen) {
     for (std::size_t i = level == 0 ? 1 : 0; i < ladder[level].rungs.size(); ++i) {
-      set_own_gains(level, Side::far, i, x, y, seen);
-      add_rung(level, Side::far, i, x, y, seen);
+      set_own_gains(level, SlowDiscSide::far, i, x, y, seen);
+      add_rung(level, SlowDiscSide::far, i, x, y, seen);
     }
-    set_larger_gains(level, Side::far, x, y, seen[3]);
+    set_larger_gains(level, SlowDiscSide::far, x, y, seen[3]);
     if (level + 1 == levels.size()) return;
     add_behind(seen, enlarged(levels[level + 1].seen[1], x, y));
   }
@@ -187,7 +190,7 @@ struct Layers {
   }
 
   void make_room_for_gains() {
-    for (Level& level : levels) {
+    for (SlowDiscLevel& level : levels) {
       level.gains.assign(highlights.rungs.size(), Grid<1>(level.width, level.height));
     }
   }
@@ -215,7 +218,7 @@ void disc_layers_oracle(const DofInput& input, const ImageView& result, ThreadPo
 
 void blur_discs_oracle(const DofInput& input, const ImageView& result, ThreadPool& pool,
                        FindHidden find) {
-  Layers layers;
+  SlowDiscLayers layers;
   layers.ladder = disc_ladder_of(input);
   layers.highlights = find_highlights(input, layers.ladder, pool);
   DofInput rest = input;
@@ -229,7 +232,7 @@ void blur_discs_oracle(const DofInput& input, const ImageView& result, ThreadPoo
   }
   layers.make_room_for_gains();
   for (std::size_t i = layers.levels.size(); i-- > 1;) {
-    Level& level = layers.levels[i];
+    SlowDiscLevel& level = layers.levels[i];
     std::array<SeenGrid, 2> seen;
     seen.fill(SeenGrid(level.width, level.height));
     pool.for_each(level.height, [&](int y) {
@@ -248,7 +251,7 @@ void blur_discs_oracle(const DofInput& input, const ImageView& result, ThreadPoo
     for (int x = 0; x < result.width; ++x) {
       Seen seen = layers.nothing_before(0, x, y);
       layers.add_near(0, x, y, seen);
-      layers.add_rung(0, Side::far, 0, x, y, seen);
+      layers.add_rung(0, SlowDiscSide::far, 0, x, y, seen);
       layers.add_far(0, x, y, seen);
       const float scale = 1.0f / (1.0f - seen[3]);
       for (std::size_t c = 0; c < 3; ++c) seen[c] *= scale;

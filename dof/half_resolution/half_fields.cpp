@@ -36,7 +36,7 @@ struct HalfRow {
 namespace softfocus {
 namespace {
 
-constexpr int kTaskRows = 8;
+constexpr int kHalfTaskRows = 8;
 
 int in_range(int value, int count) { return std::clamp(value, 0, count - 1); }
 
@@ -45,18 +45,19 @@ Planes split_cells(const DofInput& input, Planes& cells, ThreadPool& pool) {
   const int width = input.scene.width, height = input.scene.height;
   Planes light = make_planes(1, cells.width, cells.height, pool);
   const std::ptrdiff_t padded = plane_stride(width) + 2 * kMostLanes;
-  for_each_row_with<std::vector<float>>(pool, cells.height, kTaskRows, [&](int y, auto& scratch) {
-    scratch.resize(static_cast<std::size_t>(8 * padded));
-    HalfRow row{
-        {}, padded, cells.width, plane_row(cells, 0, y), cells.plane, plane_row(light, 0, y)};
-    for (int i = 0; i < 2; ++i) {
-      float* to = scratch.data() + i * 4 * padded;
-      split_picture_row(input, std::min(2 * y + i, height - 1), to, padded,
-                        static_cast<int>(padded), pool.isa());
-      row.rows[i] = to;
-    }
-    SOFTFOCUS_KERNEL(pool.isa(), halve_row)(row);
-  });
+  for_each_row_with<std::vector<float>>(
+      pool, cells.height, kHalfTaskRows, [&](int y, auto& scratch) {
+        scratch.resize(static_cast<std::size_t>(8 * padded));
+        HalfRow row{
+            {}, padded, cells.width, plane_row(cells, 0, y), cells.plane, plane_row(light, 0, y)};
+        for (int i = 0; i < 2; ++i) {
+          float* to = scratch.data() + i * 4 * padded;
+          split_picture_row(input, std::min(2 * y + i, height - 1), to, padded,
+                            static_cast<int>(padded), pool.isa());
+          row.rows[i] = to;
+        }
+        SOFTFOCUS_KERNEL(pool.isa(), halve_row)(row);
+      });
   return light;
 }
 
@@ -91,21 +92,22 @@ Highlights take_highlights(const DofInput& input, const Planes& light, Planes& c
                            ThreadPool& pool) {
   Highlights highlights;
   highlights.rows.resize(static_cast<std::size_t>(input.scene.height));
-  for_each_row_with<std::vector<float>>(pool, cells.height, kTaskRows, [&](int y, auto& scratch) {
-    const std::ptrdiff_t room = light.stride + 3 * kMostLanes;
-    scratch.resize(static_cast<std::size_t>(3 * room));
-    float* sums = scratch.data() + 2 * room;
-    const float* rows[5];
-    for (int i = 0; i < 5; ++i)
-      rows[i] = plane_row(light, 0, in_range(y + kHighlightReach / 2 * (i - 2), light.height));
-    SOFTFOCUS_KERNEL(pool.isa(), surroundings_row)
-    (rows, cells.width, scratch.data() + kMostLanes, scratch.data() + room + kMostLanes, sums);
-    for (int x = 0; x < cells.width; ++x) {
-      if (rows[2][x] > kHighlightContrast * sums[x]) {
-        take_out(input, x, y, sums[x], cells, highlights);
-      }
-    }
-  });
+  for_each_row_with<std::vector<float>>(
+      pool, cells.height, kHalfTaskRows, [&](int y, auto& scratch) {
+        const std::ptrdiff_t room = light.stride + 3 * kMostLanes;
+        scratch.resize(static_cast<std::size_t>(3 * room));
+        float* sums = scratch.data() + 2 * room;
+        const float* rows[5];
+        for (int i = 0; i < 5; ++i)
+          rows[i] = plane_row(light, 0, in_range(y + kHighlightReach / 2 * (i - 2), light.height));
+        SOFTFOCUS_KERNEL(pool.isa(), surroundings_row)
+        (rows, cells.width, scratch.data() + kMostLanes, scratch.data() + room + kMostLanes, sums);
+        for (int x = 0; x < cells.width; ++x) {
+          if (rows[2][x] > kHighlightContrast * sums[x]) {
+            take_out(input, x, y, sums[x], cells, highlights);
+          }
+        }
+      });
   std::vector<std::uint8_t> used;
   for (const std::vector<Highlight>& row : highlights.rows) {
     for (const Highlight& one : row) {

@@ -26,7 +26,7 @@ constexpr float kDetail = 0.25f;
 // --- the picture at half size ---
 
 // A picture, its planes, and what one-pass makes of it.
-struct Level {
+struct ImportanceLevel {
   Image scene;
   DofSettings settings;
   Planes before;  // colours, radius
@@ -74,8 +74,8 @@ void halve_row(const DofInput& input, const Planes& planes, int y, const DofInpu
   store_row(small, half, y, colours, colours + stride, colours + 2 * stride, isa);
 }
 
-Level half_of(const DofInput& input, const Planes& planes, ThreadPool& pool) {
-  Level level{
+ImportanceLevel half_of(const DofInput& input, const Planes& planes, ThreadPool& pool) {
+  ImportanceLevel level{
       make_image(Format::rgba16f, (input.scene.width + 1) / 2, (input.scene.height + 1) / 2),
       input.settings,
       {},
@@ -113,7 +113,8 @@ void magnify_row(const Planes& small, int plane, int y, int width, float* betwee
 }
 
 // E of the header: three rows of `stride`. `scratch` has room for three more.
-void rough_row(const Planes& planes, const Level& level, int y, float* rough, float* scratch) {
+void rough_row(const Planes& planes, const ImportanceLevel& level, int y, float* rough,
+               float* scratch) {
   const int width = planes.width;
   const std::ptrdiff_t stride = planes.stride;
   float* between = scratch;
@@ -207,7 +208,8 @@ float difference(float a, float b) {
 }
 
 // How far one level's picture is from what the next smaller one would have made of it.
-void weigh_blocks(const Level& level, const Level& smaller, Blocks& blocks, ThreadPool& pool) {
+void weigh_blocks(const ImportanceLevel& level, const ImportanceLevel& smaller, Blocks& blocks,
+                  ThreadPool& pool) {
   const Planes& planes = level.before;
   const std::ptrdiff_t stride = planes.stride;
   pool.for_each(blocks.rows, [&](int row) {
@@ -266,8 +268,8 @@ std::vector<OnePassBlock> paid_blocks(const Blocks& blocks, std::span<const std:
 // The rough picture, and the picture itself where nothing blurs it. Circles that are too small
 // to blur the small picture make up for it in importance: there E is off by some of the detail
 // that the small picture lacks.
-void store_rough(const DofInput& input, const Planes& planes, const Level& level, Blocks& blocks,
-                 const ImageView& result, ThreadPool& pool) {
+void store_rough(const DofInput& input, const Planes& planes, const ImportanceLevel& level,
+                 Blocks& blocks, const ImageView& result, ThreadPool& pool) {
   const std::ptrdiff_t stride = planes.stride;
   pool.for_each(blocks.rows, [&](int row) {
     std::vector<float> memory(static_cast<std::size_t>(6 * stride));
@@ -316,8 +318,8 @@ void refine(const DofInput& input, float budget, BlockOrder order, const ImageVi
   const DofInput clean{finite, input.settings, input.profile};
   if (budget >= 1.0f) return one_pass(clean, result, pool);
   Blocks blocks = blocks_of(planes, pool);
-  const Level half = half_of(clean, planes, pool);
-  const Level quarter = half_of({half.scene, half.settings, {}}, half.before, pool);
+  const ImportanceLevel half = half_of(clean, planes, pool);
+  const ImportanceLevel quarter = half_of({half.scene, half.settings, {}}, half.before, pool);
   weigh_blocks(half, quarter, blocks, pool);
   store_rough(clean, planes, half, blocks, result, pool);
   const std::vector<std::size_t> sequence = in_order(blocks, order);

@@ -37,13 +37,13 @@ struct MipScratch {
 namespace softfocus {
 namespace {
 
-struct Workspace {
+struct MipWorkspace {
   SeenTile tile;
   MipScratch scratch;
   MipPictureRow picture[kMipTileRows];
 };
 
-struct Frame {
+struct MipFrame {
   const DofInput& input;
   const std::vector<MipLevelRungs>& ladder;
   const MipPyramid& pyramid;
@@ -64,7 +64,7 @@ struct Frame {
   }
 };
 
-void read_tile(const Frame& frame, const LevelRectangle& at, Workspace& work) {
+void read_tile(const MipFrame& frame, const LevelRectangle& at, MipWorkspace& work) {
   const MipLevel& whole = frame.pyramid.levels[0];
   const RungStep near = frame.ladder[0].rungs[1].step;
   const bool fill =
@@ -78,8 +78,8 @@ void read_tile(const Frame& frame, const LevelRectangle& at, Workspace& work) {
   }
 }
 
-LevelRow row_of(const Frame& frame, std::size_t level, MipSide side, const LevelRectangle& at,
-                int y, const Workspace& work) {
+LevelRow row_of(const MipFrame& frame, std::size_t level, MipSide side, const LevelRectangle& at,
+                int y, const MipWorkspace& work) {
   LevelRow row{};
   if (level == 0) {
     const MipPictureRow& picture = work.picture[y + kMipReach];
@@ -96,8 +96,8 @@ LevelRow row_of(const Frame& frame, std::size_t level, MipSide side, const Level
   return row;
 }
 
-void blur_rung(const Frame& frame, std::size_t level, MipSide side, std::size_t number,
-               const LevelRectangle& at, Workspace& work) {
+void blur_rung(const MipFrame& frame, std::size_t level, MipSide side, std::size_t number,
+               const LevelRectangle& at, MipWorkspace& work) {
   const MipLevelRungs& rungs = frame.ladder[level];
   LevelRow rows[kMipTileRows];
   for (int y = -kMipReach; y < at.height + kMipReach; ++y) {
@@ -115,7 +115,8 @@ void blur_rung(const Frame& frame, std::size_t level, MipSide side, std::size_t 
   SOFTFOCUS_KERNEL(frame.isa, add_mip_rung)(blur, work.scratch, work.tile);
 }
 
-void blur_near(const Frame& frame, std::size_t level, const LevelRectangle& at, Workspace& work) {
+void blur_near(const MipFrame& frame, std::size_t level, const LevelRectangle& at,
+               MipWorkspace& work) {
   const unsigned rungs = frame.near(level, MipSide::near, at);
   const std::size_t least = level == 0 ? 1 : 0;
   for (std::size_t i = frame.ladder[level].rungs.size(); i-- > least;) {
@@ -123,7 +124,8 @@ void blur_near(const Frame& frame, std::size_t level, const LevelRectangle& at, 
   }
 }
 
-void blur_far(const Frame& frame, std::size_t level, const LevelRectangle& at, Workspace& work) {
+void blur_far(const MipFrame& frame, std::size_t level, const LevelRectangle& at,
+              MipWorkspace& work) {
   const unsigned rungs = frame.near(level, MipSide::far, at);
   for (std::size_t i = 0; i < frame.ladder[level].rungs.size(); ++i) {
     if ((rungs >> i & 1u) != 0) blur_rung(frame, level, MipSide::far, i, at, work);
@@ -136,19 +138,20 @@ void mipmap(const DofInput& input, const ImageView& result, ThreadPool& pool) {
   if (pool.isa() == Isa::scalar) return mipmap_oracle(input, result, pool);
   const std::vector<MipLevelRungs> ladder = make_mip_ladder(input.settings.max_coc_px);
   const MipPyramid pyramid = make_mip_pyramid(input, ladder, pool);
-  const Frame frame{input, ladder, pyramid, {pyramid.levels.data(), ladder.size()}, pool.isa()};
-  see_levels<Workspace>(
-      frame, pool, [&](std::size_t level, int side, const LevelRectangle& at, Workspace& work) {
+  const MipFrame frame{input, ladder, pyramid, {pyramid.levels.data(), ladder.size()}, pool.isa()};
+  see_levels<MipWorkspace>(
+      frame, pool, [&](std::size_t level, int side, const LevelRectangle& at, MipWorkspace& work) {
         (side == 0 ? blur_near : blur_far)(frame, level, at, work);
       });
-  for_each_tile<Workspace>(frame.levels[0], pool, [&](const LevelRectangle& at, Workspace& work) {
-    read_tile(frame, at, work);
-    start_tile(frame, 0, 0, at, work.tile);
-    blur_near(frame, 0, at, work);
-    blur_far(frame, 0, at, work);
-    add_larger_behind(frame, 0, at, work.tile);
-    store_tile(input, result, at, work.tile, nullptr, frame.isa);
-  });
+  for_each_tile<MipWorkspace>(frame.levels[0], pool,
+                              [&](const LevelRectangle& at, MipWorkspace& work) {
+                                read_tile(frame, at, work);
+                                start_tile(frame, 0, 0, at, work.tile);
+                                blur_near(frame, 0, at, work);
+                                blur_far(frame, 0, at, work);
+                                add_larger_behind(frame, 0, at, work.tile);
+                                store_tile(input, result, at, work.tile, nullptr, frame.isa);
+                              });
 }
 
 }  // namespace softfocus

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kVisibleRadius = 3;
 constexpr float kAsFarPx = 0.75f;
-constexpr int kTaskRows = 8, kTaskColumns = 64;
+constexpr int kHiddenTaskRows = 8, kHiddenTaskColumns = 64;
 
 constexpr std::size_t kLeft = 0, kRight = 1, kUp = 2, kDown = 3;
 constexpr int kStepX[] = {-1, 1, 0, 0}, kStepY[] = {0, 0, -1, 1};
@@ -66,8 +66,8 @@ void walk_row(const Planes& visible, const PictureObjects& objects, int y, Dista
 
 void walk_columns(const Planes& visible, const PictureObjects& objects, int first,
                   Distances& distances) {
-  const int count = std::min(kTaskColumns, objects.width - first), height = objects.height;
-  std::array<Walk, kTaskColumns> walks{};
+  const int count = std::min(kHiddenTaskColumns, objects.width - first), height = objects.height;
+  std::array<Walk, kHiddenTaskColumns> walks{};
   for (int y = 0; y < height; ++y) {
     const float* radii = plane_row(visible, kVisibleRadius, y) + first;
     const std::size_t at = objects.at(first, y);
@@ -189,10 +189,12 @@ Surfaces find_surfaces(const DofInput& input, ThreadPool& pool) {
   const PictureObjects objects = find_objects(visible, kVisibleRadius, input.objects, pool);
   Distances distances;
   for (auto& direction : distances) direction.resize(objects.numbers.size());
-  for_each_row(pool, height, kTaskRows, [&](int y) { walk_row(visible, objects, y, distances); });
-  pool.for_each((width + kTaskColumns - 1) / kTaskColumns,
-                [&](int task) { walk_columns(visible, objects, task * kTaskColumns, distances); });
-  for_each_row(pool, height, kTaskRows,
+  for_each_row(pool, height, kHiddenTaskRows,
+               [&](int y) { walk_row(visible, objects, y, distances); });
+  pool.for_each((width + kHiddenTaskColumns - 1) / kHiddenTaskColumns, [&](int task) {
+    walk_columns(visible, objects, task * kHiddenTaskColumns, distances);
+  });
+  for_each_row(pool, height, kHiddenTaskRows,
                [&](int y) { fill_row(visible, objects, distances, y, surfaces.hidden); });
   return surfaces;
 }

@@ -40,12 +40,12 @@ struct ObjectScratch {
 namespace softfocus {
 namespace {
 
-struct Level {
+struct ObjectLevel {
   int width, height;
   LevelPlanes seen[2];
 };
 
-struct Workspace {
+struct ObjectWorkspace {
   SeenTile tile;
   ObjectScratch scratch;
   // Rows of the picture that become one of a level, copies of those that leave the picture, and
@@ -55,11 +55,11 @@ struct Workspace {
   std::vector<float> fine;
 };
 
-struct Frame {
+struct ObjectFrame {
   const Surfaces& surfaces;
   const ObjectLadder& ladder;
   const LayerMarks& marks;
-  std::span<const Level> levels;
+  std::span<const ObjectLevel> levels;
   Isa isa;
 
   // The layers of a level that may reach into a rectangle: bits, the smallest rung's the lowest.
@@ -112,9 +112,9 @@ SurfaceRow surface_row(const Surfaces& surfaces, int x, int y, int count,
 
 // A row of a layer's channels in a level's pixels, means of the picture's. Pixels outside the
 // level are those of its border.
-void make_row(const Frame& frame, std::size_t level, const ObjectRung& layer, int x, int y,
-              Workspace& work, int to_row) {
-  const Level& of = frame.levels[level];
+void make_row(const ObjectFrame& frame, std::size_t level, const ObjectRung& layer, int x, int y,
+              ObjectWorkspace& work, int to_row) {
+  const ObjectLevel& of = frame.levels[level];
   const int inside_y = std::clamp(y, 0, of.height - 1);
   const int begin = std::max(x, 0), end = std::min(x + kDiscTileRow, of.width);
   const int size = 1 << level, count = (end - begin) * size;
@@ -140,8 +140,8 @@ void make_row(const Frame& frame, std::size_t level, const ObjectRung& layer, in
   }
 }
 
-void blur_layer(const Frame& frame, std::size_t level, const ObjectRung& layer,
-                const LevelRectangle& at, Workspace& work) {
+void blur_layer(const ObjectFrame& frame, std::size_t level, const ObjectRung& layer,
+                const LevelRectangle& at, ObjectWorkspace& work) {
   const int reach = static_cast<int>(layer.rung->spans.size()) - 1;
   for (int y = 0; y < at.height + 2 * (reach + 1); ++y) {
     make_row(frame, level, layer, at.x - kDiscMargin, at.y + y - reach - 1, work, y);
@@ -152,7 +152,8 @@ void blur_layer(const Frame& frame, std::size_t level, const ObjectRung& layer,
 
 // --- levels ---
 
-void add_near(const Frame& frame, std::size_t level, const LevelRectangle& at, Workspace& work) {
+void add_near(const ObjectFrame& frame, std::size_t level, const LevelRectangle& at,
+              ObjectWorkspace& work) {
   const std::vector<ObjectRung>& layers = frame.ladder.near[level];
   const std::uint32_t marked = frame.layers_near(level, 0, at);
   const std::size_t last = frame.ladder.levels[level].rungs.size() - 1;
@@ -161,7 +162,8 @@ void add_near(const Frame& frame, std::size_t level, const LevelRectangle& at, W
   }
 }
 
-void add_far(const Frame& frame, std::size_t level, const LevelRectangle& at, Workspace& work) {
+void add_far(const ObjectFrame& frame, std::size_t level, const LevelRectangle& at,
+             ObjectWorkspace& work) {
   const std::vector<ObjectRung>& layers = frame.ladder.far[level];
   std::uint32_t marked = frame.layers_near(level, 1, at);
   if (level == 0) marked |= frame.layers_near(level, 0, at) & 1u;  // the layer in focus
@@ -171,7 +173,7 @@ void add_far(const Frame& frame, std::size_t level, const LevelRectangle& at, Wo
 }
 
 struct Levels {
-  std::vector<Level> levels;
+  std::vector<ObjectLevel> levels;
   RowMemory<float> memory;
 };
 Levels make_levels(int width, int height, std::size_t count, MemoryShelf& shelf) {
@@ -182,7 +184,7 @@ Levels make_levels(int width, int height, std::size_t count, MemoryShelf& shelf)
   // Counts floats first, then takes them.
   for (const bool counting : {true, false}) {
     std::size_t used = 0;
-    for (Level& level : made.levels) {
+    for (ObjectLevel& level : made.levels) {
       if (&level == &made.levels[0]) continue;
       for (LevelPlanes& seen : level.seen) {
         seen = take_planes(kSeenChannels, level.width, level.height, made.memory.get(), used);
@@ -203,18 +205,20 @@ void object_layers(const DofInput& input, const ImageView& result, ThreadPool& p
   const LayerMarks marks = mark_layers(surfaces, pool);
   const ObjectLadder ladder = make_object_ladder(input.settings.max_coc_px);
   const Levels made = make_levels(result.width, result.height, ladder.levels.size(), pool.memory());
-  const Frame frame{surfaces, ladder, marks, made.levels, pool.isa()};
-  see_levels<Workspace>(
-      frame, pool, [&](std::size_t level, int side, const LevelRectangle& at, Workspace& work) {
+  const ObjectFrame frame{surfaces, ladder, marks, made.levels, pool.isa()};
+  see_levels<ObjectWorkspace>(
+      frame, pool,
+      [&](std::size_t level, int side, const LevelRectangle& at, ObjectWorkspace& work) {
         (side == 0 ? add_near : add_far)(frame, level, at, work);
       });
-  for_each_tile<Workspace>(frame.levels[0], pool, [&](const LevelRectangle& at, Workspace& work) {
-    start_tile(frame, 0, 0, at, work.tile);
-    add_near(frame, 0, at, work);
-    add_far(frame, 0, at, work);
-    add_larger_behind(frame, 0, at, work.tile);
-    store_tile(input, result, at, work.tile, nullptr, frame.isa);
-  });
+  for_each_tile<ObjectWorkspace>(frame.levels[0], pool,
+                                 [&](const LevelRectangle& at, ObjectWorkspace& work) {
+                                   start_tile(frame, 0, 0, at, work.tile);
+                                   add_near(frame, 0, at, work);
+                                   add_far(frame, 0, at, work);
+                                   add_larger_behind(frame, 0, at, work.tile);
+                                   store_tile(input, result, at, work.tile, nullptr, frame.isa);
+                                 });
 }
 
 }  // namespace softfocus

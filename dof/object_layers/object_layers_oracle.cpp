@@ -28,7 +28,7 @@ struct SlowLevel {
 
 float signed_square(float radius) { return radius * std::fabs(radius); }
 
-struct Layers {
+struct SlowObjectLayers {
   Surfaces surfaces;
   ObjectLadder ladder;
   std::vector<SlowLevel> levels;
@@ -140,7 +140,8 @@ void object_layers_oracle(const DofInput& input, const ImageView& result, Thread
   const CentredDiscs centred = centre_discs(input, pool);
   DofInput of_centred = input;
   of_centred.scene = centred.picture;
-  Layers layers{find_surfaces(of_centred, pool), make_object_ladder(input.settings.max_coc_px), {}};
+  SlowObjectLayers layers{
+      find_surfaces(of_centred, pool), make_object_ladder(input.settings.max_coc_px), {}};
   int width = result.width, height = result.height;
   for (std::size_t i = 0; i < layers.ladder.levels.size(); ++i) {
     layers.levels.push_back({width, height, {}});

@@ -11,7 +11,7 @@ namespace softfocus {
 namespace {
 
 constexpr float kStepPx = 0.75f, kStepOfNumberPx = 2.0f;
-constexpr int kBandRows = 32;
+constexpr int kObjectBandRows = 32;
 
 // Whether two of four radii in a row, `a` and `b`, lie on one surface. NaN, which compares false,
 // stands for a pixel outside the picture.
@@ -21,7 +21,7 @@ bool one_surface(float before, float a, float b, float behind, float step_px) {
          std::fabs(step - (behind - b)) <= step_px;
 }
 
-struct Source {
+struct ObjectSource {
   const Planes& planes;
   int plane;
   std::span<const std::uint16_t> given;
@@ -32,7 +32,7 @@ struct Source {
   }
 };
 
-void link_row(const Source& from, PictureObjects& objects, int y) {
+void link_row(const ObjectSource& from, PictureObjects& objects, int y) {
   const int width = objects.width;
   std::uint8_t* links = &objects.links[objects.at(0, y)];
   const float* radii = plane_row(from.planes, from.plane, y);
@@ -113,14 +113,14 @@ void unite_row(const PictureObjects& objects, std::uint32_t* earlier, int y, boo
 }
 
 void connect(PictureObjects& objects, ThreadPool& pool) {
-  const int height = objects.height, bands = (height + kBandRows - 1) / kBandRows;
+  const int height = objects.height, bands = (height + kObjectBandRows - 1) / kObjectBandRows;
   std::vector<std::uint32_t> earlier(objects.links.size());
   pool.for_each(bands, [&](int band) {
-    const int begin = band * kBandRows, end = std::min(begin + kBandRows, height);
+    const int begin = band * kObjectBandRows, end = std::min(begin + kObjectBandRows, height);
     for (int y = begin; y < end; ++y) unite_row(objects, earlier.data(), y, y > begin);
   });
   const auto width = static_cast<std::size_t>(objects.width);
-  for (int y = kBandRows; y < height; y += kBandRows) {
+  for (int y = kObjectBandRows; y < height; y += kObjectBandRows) {
     for (std::size_t at = objects.at(0, y - 1); at < objects.at(0, y); ++at) {
       if ((objects.links[at] & kLinkedDown) == 0) continue;
       unite(earlier.data(), static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(at + width));
@@ -138,7 +138,7 @@ void connect(PictureObjects& objects, ThreadPool& pool) {
 // Runs of one object in a row are short work for a lock: its largest radius once a run.
 void measure_objects(const Planes& planes, int radii, PictureObjects& objects, ThreadPool& pool) {
   std::mutex mutex;
-  for_each_band(pool, objects.height, kBandRows, [&](int first, int end) {
+  for_each_band(pool, objects.height, kObjectBandRows, [&](int first, int end) {
     struct Largest {
       std::uint32_t object;
       float radius_px;
@@ -168,7 +168,7 @@ PictureObjects find_objects(const Planes& planes, int radii, std::span<const std
   const std::size_t pixels = objects.at(0, objects.height);
   objects.links.resize(pixels);
   objects.numbers.resize(pixels);
-  const Source source{planes, radii, given};
+  const ObjectSource source{planes, radii, given};
   pool.for_each(objects.height, [&](int y) { link_row(source, objects, y); });
   if (given.empty()) {
     connect(objects, pool);

@@ -40,7 +40,7 @@ namespace {
 
 // A level of the pyramid, its pixels some power of two as wide as the picture's, and
 // GuessRows' columns.
-struct Level {
+struct FarthestLevel {
   Planes pixels;
   std::vector<std::int32_t> near, far;
   std::vector<float> near_share;
@@ -138,10 +138,12 @@ TileMask seen_tiles(const Planes& scene, const std::vector<TileRadii>& tiles, fl
   return touching(reach, torn);
 }
 
-// Level `i` above `fine`.
-Level make_level(const Planes& scene, const std::vector<Level>& finer, ThreadPool& pool) {
+// FarthestLevel `i` above `fine`.
+FarthestLevel make_level(const Planes& scene, const std::vector<FarthestLevel>& finer,
+                         ThreadPool& pool) {
   const Planes& fine = finer.empty() ? scene : finer.back().pixels;
-  Level level{make_planes(4, (fine.width + 1) / 2, (fine.height + 1) / 2, pool), {}, {}, {}};
+  FarthestLevel level{
+      make_planes(4, (fine.width + 1) / 2, (fine.height + 1) / 2, pool), {}, {}, {}};
   pool.for_each(level.pixels.height,
                 [&](int y) { farthest_row(fine, y, level.pixels, pool.isa()); });
   const auto columns = static_cast<std::size_t>(plane_stride(scene.width));
@@ -159,10 +161,11 @@ Level make_level(const Planes& scene, const std::vector<Level>& finer, ThreadPoo
 }
 
 // The rows of all levels that row `y` of the picture lies between.
-std::vector<GuessRows> guess_rows(const Planes& scene, const std::vector<Level>& levels, int y) {
+std::vector<GuessRows> guess_rows(const Planes& scene, const std::vector<FarthestLevel>& levels,
+                                  int y) {
   std::vector<GuessRows> rows;
   int height = scene.height;
-  for (const Level& level : levels) {
+  for (const FarthestLevel& level : levels) {
     const PushTap down = push_tap(y, height);
     rows.push_back({{plane_row(level.pixels, 0, down.near), plane_row(level.pixels, 0, down.far)},
                     {down.near_share, 1.0f - down.near_share},
@@ -220,7 +223,7 @@ Behind guess_behind(const Planes& scene, ThreadPool& pool) {
   }
   Behind behind{make_planes(4, scene.width, scene.height, pool),
                 seen_tiles(scene, tiles, farthest)};
-  std::vector<Level> levels;
+  std::vector<FarthestLevel> levels;
   // A level's pixels are `size` pixels wide.
   for (int size = 1; static_cast<float>(size) < 2.0f * (farthest - nearest); size *= 2) {
     const Planes& fine = levels.empty() ? scene : levels.back().pixels;

@@ -147,7 +147,7 @@ Planes far_layer(const Planes& scene, const LayerSplit& split, ThreadPool& pool)
 
 namespace {
 
-constexpr int kTaskRows = 16;
+constexpr int kPlaneTaskRows = 16;
 
 bool all_known(const Planes& level, int values) {
   for (int y = 0; y < level.height; ++y) {
@@ -227,7 +227,8 @@ void guess_hidden(Planes& sheet, int values, ThreadPool& pool) {
     const Planes& fine = level(top);
     if (fine.width == 1 && fine.height == 1) return;
     Planes coarse = make_planes(values + 1, (fine.width + 1) / 2, (fine.height + 1) / 2, pool);
-    for_each_row(pool, coarse.height, kTaskRows, [&](int y) { pull_row(fine, values, y, coarse); });
+    for_each_row(pool, coarse.height, kPlaneTaskRows,
+                 [&](int y) { pull_row(fine, values, y, coarse); });
     coarser.push_back(std::move(coarse));
     ++top;
   }
@@ -236,7 +237,7 @@ void guess_hidden(Planes& sheet, int values, ThreadPool& pool) {
     std::vector<PushTap> taps(static_cast<std::size_t>(fine.width));
     for (int x = 0; x < fine.width; ++x)
       taps[static_cast<std::size_t>(x)] = push_tap(x, fine.width);
-    for_each_row(pool, fine.height, kTaskRows,
+    for_each_row(pool, fine.height, kPlaneTaskRows,
                  [&](int y) { push_row(level(top), taps, values, y, fine); });
   }
 }

@@ -12,16 +12,11 @@
 #include <vector>
 
 #include "raster/images/texel.h"
+#include "raster/numbers/half.h"
 #include "raster/passes/fullscreen_pass.h"
 #include "raster/passes/kernel.h"
 #include "raster/passes/pyramid.h"
 #include "raster/threads/loops.h"
-
-namespace softfocus {
-
-inline constexpr float kLargestHalf = 65504.0f;
-
-}  // namespace softfocus
 
 #define SOFTFOCUS_KERNELS "raster/effects/bloom.cpp"
 #include "raster/lanes/for_each_isa.inl"

@@ -37,13 +37,13 @@ namespace softfocus {
 namespace {
 
 /// The place in the source of a column or row of a copy's pixels, along one axis.
-struct Place {
+struct CopiedPlace {
   int first;    ///< of two pixels, from -1 to the size less 1
   float share;  ///< of the second
   float fade;   ///< 0 where nothing is seen
 };
 
-Place place_of(int pixel, float scale, float anchor, float fade, int size) {
+CopiedPlace place_of(int pixel, float scale, float anchor, float fade, int size) {
   const float middle = static_cast<float>(pixel) + 0.5f;
   const float at = anchor + scale * (middle - anchor);
   const float edge = std::min(at, static_cast<float>(size) - at) * fade;
@@ -73,7 +73,8 @@ Columns columns_of(const CopiesPass& pass, int width) {
     for (int channel = 0; channel < 3; ++channel, start += columns.stride) {
       std::array<int, 2> seen{width, 0};
       for (int x = 0; x < width; ++x) {
-        const Place place = place_of(x, copy.scale[channel], pass.anchor.x, pass.fade.x, width);
+        const CopiedPlace place =
+            place_of(x, copy.scale[channel], pass.anchor.x, pass.fade.x, width);
         const std::size_t at = start + static_cast<std::size_t>(x);
         columns.firsts[at] = place.first;
         columns.shares[at] = place.share;
@@ -136,7 +137,7 @@ void scaled_copies(const CopiesPass& pass, const ConstImageView& source, const C
   const auto add_row = [&](int y, std::size_t copy, int channel, float* sums) {
     const Channel& light = channels[static_cast<std::size_t>(channel)];
     const ScaledCopy& what = pass.copies[copy];
-    const Place line = place_of(y, what.scale[channel], pass.anchor.y, pass.fade.y, height);
+    const CopiedPlace line = place_of(y, what.scale[channel], pass.anchor.y, pass.fade.y, height);
     if (!(line.fade > 0.0f) || (light.is_dark(line.first) && light.is_dark(line.first + 1))) return;
     const std::size_t table = 3 * copy + static_cast<std::size_t>(channel);
     const auto [begin, end] = columns.seen[table];

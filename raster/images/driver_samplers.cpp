@@ -122,7 +122,7 @@ int repeat(std::int32_t index, int size) {
   return static_cast<int>((static_cast<std::uint32_t>(index) + 1024 * length) % length);
 }
 
-struct Place {
+struct CachedPlace {
   int x;
   int y;
 };
@@ -138,16 +138,16 @@ int slot_of(int tile_x, int tile_y) { return (tile_x + 9 * tile_y) % 16; }
 // The texel that is read for (x, y), one of the four. If it would lie outside the picture, the
 // driver reads texels that an earlier tile left there, which depends on all fetches before;
 // here (x, y) comes back.
-Place place_in_cache(const Image& image, int x, int y, const Taps& u, const Taps& v) {
+CachedPlace place_in_cache(const Image& image, int x, int y, const Taps& u, const Taps& v) {
   const bool one_tile = u.first / kTile == u.second / kTile && v.first / kTile == v.second / kTile;
   if (one_tile) return {x, y};
   const int slot = slot_of(x / kTile, y / kTile);
   for (const int row : {v.second, v.first}) {
     for (const int column : {u.second, u.first}) {
       if (slot_of(column / kTile, row / kTile) != slot) continue;
-      const Place place{column / kTile * kTile + x % kTile, row / kTile * kTile + y % kTile};
+      const CachedPlace place{column / kTile * kTile + x % kTile, row / kTile * kTile + y % kTile};
       const bool inside = place.x < image.width && place.y < image.height;
-      return inside ? place : Place{x, y};
+      return inside ? place : CachedPlace{x, y};
     }
   }
   return {x, y};
@@ -236,7 +236,7 @@ glm::vec4 sample_softpipe(const Texture& texture, const Sampler& sampler, glm::v
     const glm::vec4 value = filter_bilinear(
         u, v,
         [&](int x, int y) {
-          const Place place = place_in_cache(image, x, y, u, v);
+          const CachedPlace place = place_in_cache(image, x, y, u, v);
           return fetch_texel(image, place.x, place.y, profile);
         },
         mix);

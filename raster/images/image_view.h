@@ -36,6 +36,8 @@ constexpr std::size_t bytes_per_texel(Format format) {
   return 0;
 }
 
+inline constexpr std::size_t kTexelHalves = 4;  ///< of Format::rgba16f
+
 /// Largest width and height of a picture: what GPUs of the time allow (D3D11: 16384).
 inline constexpr int kMaxImageSize = 16384;
 

@@ -25,7 +25,8 @@ enum class HalfRounding : std::uint8_t {
   swiftshader,
 };
 
-inline constexpr std::uint16_t kHalfLargest = 0x7BFF;  // 65504
+inline constexpr std::uint16_t kHalfLargest = 0x7BFF;
+inline constexpr float kLargestHalf = 65504.0f;  ///< kHalfLargest's value
 
 /// Passes compare depths by this one: infinity is as far as a half can be.
 inline constexpr float kFarthestDepth = 65504.0f;

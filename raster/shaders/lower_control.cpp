@@ -14,7 +14,7 @@ void Lowering::run_call(Call& call, ShaderRegion& to) {
   if (call.depth > kDeepestCalls) refuse("functions call each other too deeply, or themselves");
   for (const SpirvVariable& variable : call.function->variables) {
     const SpirvId of = type(variable.type).element;
-    const Place at{Place::In::variables, of, new_variables(scalars(of))};
+    const Pointee at{Pointee::In::variables, of, new_variables(scalars(of))};
     set_initial(to, at.first, scalars(of), variable.initial);
     call.places[variable.id] = at;
   }
@@ -339,7 +339,7 @@ void Lowering::run(Call& call, const SpirvInstruction& in, ShaderRegion& to) {
   switch (in.op) {
     case SpirvOp::store:
     case copy_memory: {
-      const Place at = place(call, word(w, 0));
+      const Pointee at = place(call, word(w, 0));
       const Scalars values =
           in.op == copy_memory ? this->load(to, place(call, word(w, 1))) : value(call, word(w, 1));
       if (values.size() != scalars(at.type)) damaged("another type is stored");
@@ -349,7 +349,7 @@ void Lowering::run(Call& call, const SpirvInstruction& in, ShaderRegion& to) {
     case access_chain:
     case in_bounds_access_chain: {
       if (w.empty()) damaged("an instruction is cut short");
-      const Place at = chain(to, place(call, w[0]), indices(call, w.subspan(1)));
+      const Pointee at = chain(to, place(call, w[0]), indices(call, w.subspan(1)));
       if (at.type != type(in.type).element) damaged("a pointer points to another type");
       call.places[in.result] = at;
       return;

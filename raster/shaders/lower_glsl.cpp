@@ -203,7 +203,7 @@ Scalars Lowering::glsl_pointers(Call& call, const SpirvInstruction& in, GlslOp o
       made.push_back(make(to, ShaderOp::mantissa_of, x));
     }
   }
-  const Place at = place(call, word(in.operands, 3));
+  const Pointee at = place(call, word(in.operands, 3));
   second = words_of(second);
   if (scalars(at.type) != second.size()) damaged("another type is stored");
   this->store(to, at, second);

@@ -152,13 +152,13 @@ void Lowering::lower() {
     const SpirvId type = module_.type(variable.type).element;
     using enum SpirvStorage;
     if (is_uniform(variable.storage)) {
-      globals_[id] = {Place::In::uniforms, type, first_uniform};
+      globals_[id] = {Pointee::In::uniforms, type, first_uniform};
       first_uniform += scalars;
     } else if (variable.storage == input) {
-      globals_[id] = {Place::In::inputs, type, static_cast<std::uint32_t>(tree_.inputs.size())};
+      globals_[id] = {Pointee::In::inputs, type, static_cast<std::uint32_t>(tree_.inputs.size())};
       add_inputs(type, decorations_of(id));
     } else {
-      globals_[id] = {Place::In::variables, type, new_variables(scalars)};
+      globals_[id] = {Pointee::In::variables, type, new_variables(scalars)};
       set_initial(tree_.main, globals_[id].first, scalars, variable.initial);
       if (variable.storage == output) add_outputs(globals_[id].first, type, decorations_of(id));
     }
@@ -250,10 +250,10 @@ int Lowering::locations(SpirvId id) const {
   return what.kind == SpirvKind::structure ? sum : static_cast<int>(what.scalars + 3) / 4;
 }
 
-ShaderValue Lowering::load_one(ShaderRegion& to, const Place& at, std::uint32_t number) {
+ShaderValue Lowering::load_one(ShaderRegion& to, const Pointee& at, std::uint32_t number) {
   const std::uint32_t place = at.first + number;
   const bool is_known = at.index == kNoValue;
-  using enum Place::In;
+  using enum Pointee::In;
   if (at.in == uniforms && is_any_late(at, place)) return load_input(to, at, late_inputs_ + place);
   if (at.in == uniforms && is_known) return whole(uniforms_[place]);
   if (at.in == variables && is_known) return get(to, place);
@@ -269,7 +269,7 @@ ShaderValue Lowering::load_one(ShaderRegion& to, const Place& at, std::uint32_t 
   return in.to;
 }
 
-ShaderValue Lowering::load_input(ShaderRegion& to, const Place& at, std::uint32_t place) {
+ShaderValue Lowering::load_input(ShaderRegion& to, const Pointee& at, std::uint32_t place) {
   const auto input = [&](std::uint32_t number) {
     ShaderInstruction& in = add(to, ShaderOp::input);
     in.place = number;
@@ -285,7 +285,7 @@ ShaderValue Lowering::load_input(ShaderRegion& to, const Place& at, std::uint32_
   return chosen;
 }
 
-bool Lowering::is_any_late(const Place& at, std::uint32_t place) const {
+bool Lowering::is_any_late(const Pointee& at, std::uint32_t place) const {
   if (is_late_.empty()) return false;
   bool any = is_late_[place];
   for (std::uint32_t i = 1; i < at.count && at.index != kNoValue; ++i) {
@@ -302,14 +302,14 @@ std::uint32_t Lowering::uniform_table() {
   return *uniform_table_;
 }
 
-Scalars Lowering::load(ShaderRegion& to, const Place& at) {
+Scalars Lowering::load(ShaderRegion& to, const Pointee& at) {
   Scalars values(scalars(at.type));
   for (std::uint32_t i = 0; i < values.size(); ++i) values[i] = load_one(to, at, i);
   return values;
 }
 
-void Lowering::store(ShaderRegion& to, const Place& at, const Scalars& values) {
-  if (at.in != Place::In::variables) damaged("what cannot be written is written");
+void Lowering::store(ShaderRegion& to, const Pointee& at, const Scalars& values) {
+  if (at.in != Pointee::In::variables) damaged("what cannot be written is written");
   for (std::uint32_t i = 0; i < values.size(); ++i) {
     if (at.index == kNoValue) {
       set(to, at.first + i, values[i]);
@@ -325,7 +325,7 @@ void Lowering::store(ShaderRegion& to, const Place& at, const Scalars& values) {
   }
 }
 
-Place Lowering::chain(ShaderRegion& to, Place at, const std::vector<ShaderValue>& indices) {
+Pointee Lowering::chain(ShaderRegion& to, Pointee at, const std::vector<ShaderValue>& indices) {
   for (const ShaderValue index : indices) {
     const SpirvType& of = type(at.type);
     const bool is_known = tree_.is_constant(index);

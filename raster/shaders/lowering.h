@@ -32,7 +32,7 @@ inline bool is_uniform(SpirvStorage storage) {
 }
 
 /// What a pointer points to: numbers one after the other.
-struct Place {
+struct Pointee {
   enum class In : std::uint8_t { variables, uniforms, inputs, outputs } in{};
   SpirvId type = 0;         ///< of what is there
   std::uint32_t first = 0;  ///< number
@@ -46,7 +46,7 @@ struct Call {
   const SpirvFunction* function = nullptr;
   std::map<SpirvId, Scalars> values{};
   std::map<SpirvId, SpirvId> types{};  ///< of the values
-  std::map<SpirvId, Place> places{};
+  std::map<SpirvId, Pointee> places{};
   std::map<SpirvId, std::uint32_t> phis{};  ///< the first of the variables of each
   std::uint32_t scope = 0;
   std::uint32_t result = 0;  ///< the first variable of what is returned
@@ -75,7 +75,7 @@ class Lowering {
   ShaderTree& tree_;
   std::vector<ShaderVariable> clamped_colours_{};
   std::uint32_t late_inputs_ = 0;  ///< the first input that is a uniform; the others follow
-  std::map<SpirvId, Place> globals_{};
+  std::map<SpirvId, Pointee> globals_{};
   std::vector<Target> targets_{};
   std::optional<std::uint32_t> uniform_table_{};
   std::size_t nodes_ = 0, work_ = 0;
@@ -251,15 +251,15 @@ class Lowering {
 
   // --- memory ---
 
-  ShaderValue load_one(ShaderRegion& to, const Place& at, std::uint32_t number);
+  ShaderValue load_one(ShaderRegion& to, const Pointee& at, std::uint32_t number);
   /// By an index that is not known, all that it may mean are taken.
-  ShaderValue load_input(ShaderRegion& to, const Place& at, std::uint32_t place);
-  bool is_any_late(const Place& at, std::uint32_t place) const;
+  ShaderValue load_input(ShaderRegion& to, const Pointee& at, std::uint32_t place);
+  bool is_any_late(const Pointee& at, std::uint32_t place) const;
   /// Where the uniforms lie among the tables.
   std::uint32_t uniform_table();
 
-  Scalars load(ShaderRegion& to, const Place& at);
-  void store(ShaderRegion& to, const Place& at, const Scalars& values);
+  Scalars load(ShaderRegion& to, const Pointee& at);
+  void store(ShaderRegion& to, const Pointee& at, const Scalars& values);
 
   /// An index as a whole number from 0 to count - 1.
   ShaderValue clamped(ShaderRegion& to, ShaderValue index, std::uint32_t count) {
@@ -267,7 +267,7 @@ class Lowering {
     return make(to, ShaderOp::minimum_signed, from_0, whole(count - 1));
   }
 
-  Place chain(ShaderRegion& to, Place at, const std::vector<ShaderValue>& indices);
+  Pointee chain(ShaderRegion& to, Pointee at, const std::vector<ShaderValue>& indices);
 
   // --- values and places of ids ---
 
@@ -297,7 +297,7 @@ class Lowering {
     if (values.size() != 1) damaged("a scalar is none");
     return values[0];
   }
-  Place place(Call& call, SpirvId id) {
+  Pointee place(Call& call, SpirvId id) {
     if (const auto found = call.places.find(id); found != call.places.end()) return found->second;
     if (const auto found = globals_.find(id); found != globals_.end()) return found->second;
     damaged("a pointer is used that is not there");

@@ -18,7 +18,7 @@ bool mirrors(const glm::dmat4& m) {
   return dot(glm::dvec3{m[0]}, cross(glm::dvec3{m[1]}, glm::dvec3{m[2]})) < 0.0;
 }
 
-bool is_cut_out(const Material& material, const Mesh& mesh) {
+bool has_cut_outs(const Material& material, const Mesh& mesh) {
   return material.opacity_texture && !mesh.uvs.empty() && material.cut_out;
 }
 
@@ -314,7 +314,7 @@ std::vector<std::string> shadow_warnings(const Scene& scene) {
       return is(scene.materials[object.material], scene.meshes[object.mesh]);
     });
   };
-  if (any(is_cut_out)) warnings.emplace_back("shadows: cut-out surfaces cast none");
+  if (any(has_cut_outs)) warnings.emplace_back("shadows: cut-out surfaces cast none");
   if (any(is_transparent)) {
     warnings.emplace_back("shadows: transparent surfaces cast none and are fully lit");
   }
@@ -328,7 +328,7 @@ Facets scene_facets(const Scene& scene, double frame) {
     const Material& material = scene.materials[object.material];
     const glm::dmat4 to_world = object_matrix(object, frame);
     const bool swaps = mirrors(to_world);
-    const bool casts = !is_transparent(material, mesh) && !is_cut_out(material, mesh);
+    const bool casts = !is_transparent(material, mesh) && !has_cut_outs(material, mesh);
     std::vector<glm::dvec3> positions;
     positions.reserve(mesh.positions.size());
     for (const glm::vec3& position : mesh.positions) {

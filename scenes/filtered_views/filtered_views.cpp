@@ -13,7 +13,7 @@ namespace softfocus {
 namespace {
 
 // Views that are held against twice as many.
-constexpr int kFirstViews = 8;
+constexpr int kFewestViews = 8;
 
 void draw_tile_of_views(FilteredViewsBuffer& buffer, int tile, std::size_t count,
                         TileMemory& memory, Isa isa) {
@@ -153,7 +153,7 @@ SampledPicture filtered_views(FilteredViewsBuffer& buffer, const LensViewInput& 
   }
   SampleSums of_half;
   std::optional<double> apart;
-  for (int views = std::min(kFirstViews, sampling.samples);;) {
+  for (int views = std::min(kFewestViews, sampling.samples);;) {
     set_views(buffer, input, views);
     clear_sums(sums);
     add_filtered_views(buffer, input, sums, pool);

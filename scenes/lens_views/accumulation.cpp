@@ -65,7 +65,6 @@ SampledPicture take_samples(const LensViewInput& input, const AddSamples& add_sa
 
 namespace {
 
-constexpr std::size_t kTexelHalves = 4;
 constexpr std::size_t kTileHalves = std::size_t{kTileSize} * kTileSize * kTexelHalves;
 
 // A group of samples of one tile, each a row after the other.

@@ -11,6 +11,7 @@
 #include "scenes/files/decimal.h"
 #include "scenes/files/file_bytes.h"
 #include "scenes/files/texture_file.h"
+#include "scenes/load/obj_text.h"
 #include "scenes/make/procedural_texture.h"
 
 #define TINYOBJLOADER_IMPLEMENTATION
@@ -80,20 +81,6 @@ std::optional<std::uint32_t> texture_index(const std::filesystem::path& library,
     materials.files.push_back(file);
   }
   return entry->second;
-}
-
-constexpr std::string_view kBlanks = " \t";
-
-std::string_view trimmed(std::string_view text) {
-  text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
-  return text.substr(0, text.find_last_not_of(kBlanks) + 1);
-}
-
-std::string_view next_word(std::string_view& line) {
-  line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));
-  const std::string_view word = line.substr(0, line.find_first_of(kBlanks));
-  line.remove_prefix(word.size());
-  return word;
 }
 
 struct Map {

@@ -34,7 +34,7 @@ void drop_faces(std::span<const std::uint32_t> which, std::vector<ObjFace>& face
 }
 
 // Three corners whose normals index all_normals below.
-struct Triangle {
+struct ObjTriangle {
   std::array<ObjCorner, 3> corners;
   std::uint32_t face = 0;
   glm::dvec3 area_normal{0.0};  // its length is twice the area
@@ -52,7 +52,7 @@ bool has_normal(const ObjText& obj, const ObjCorner& corner) {
 }
 
 // Whether the normals given for a triangle point to its other side.
-bool is_wound_against_normals(const ObjText& obj, const Triangle& triangle) {
+bool is_wound_against_normals(const ObjText& obj, const ObjTriangle& triangle) {
   double agreement = 0.0;
   for (const ObjCorner& corner : triangle.corners) {
     if (!has_normal(obj, corner)) return false;
@@ -63,11 +63,11 @@ bool is_wound_against_normals(const ObjText& obj, const Triangle& triangle) {
 }
 
 // Those with an area.
-std::vector<Triangle> make_triangles(const ObjText& obj) {
+std::vector<ObjTriangle> make_triangles(const ObjText& obj) {
   const auto place = [&](const ObjCorner& corner) {
     return glm::dvec3{obj.positions[static_cast<std::size_t>(corner.position)]};
   };
-  std::vector<Triangle> triangles;
+  std::vector<ObjTriangle> triangles;
   triangles.reserve(obj.faces.size());
   std::vector<glm::dvec3> outline;
   for (std::size_t f = 0; f < obj.faces.size(); ++f) {
@@ -76,7 +76,7 @@ std::vector<Triangle> make_triangles(const ObjText& obj) {
     outline.clear();
     for (std::uint32_t i = 0; i < face.corner_count; ++i) outline.push_back(place(corners[i]));
     const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
-      Triangle triangle{{corners[a], corners[b], corners[c]}, static_cast<std::uint32_t>(f)};
+      ObjTriangle triangle{{corners[a], corners[b], corners[c]}, static_cast<std::uint32_t>(f)};
       triangle.area_normal = cross(outline[b] - outline[a], outline[c] - outline[a]);
       if (triangle.area_normal == glm::dvec3{0.0}) return;
       if (is_wound_against_normals(obj, triangle)) {
@@ -96,7 +96,7 @@ std::vector<Triangle> make_triangles(const ObjText& obj) {
 
 // Faces whose normals are made need neighbours that are wound alike: else the sums cancel.
 void turn_alike(const ObjText& obj, const std::vector<std::uint32_t>& place_of,
-                std::vector<Triangle>& triangles, ThreadPool& pool) {
+                std::vector<ObjTriangle>& triangles, ThreadPool& pool) {
   std::vector<std::size_t> without_normals;
   std::vector<std::array<std::uint32_t, 3>> places;
   for (std::size_t i = 0; i < triangles.size(); ++i) {
@@ -114,7 +114,7 @@ void turn_alike(const ObjText& obj, const std::vector<std::uint32_t>& place_of,
   const std::vector<bool> turned = triangles_to_turn(places, pool);
   for (std::size_t i = 0; i < turned.size(); ++i) {
     if (!turned[i]) continue;
-    Triangle& triangle = triangles[without_normals[i]];
+    ObjTriangle& triangle = triangles[without_normals[i]];
     std::swap(triangle.corners[1], triangle.corners[2]);
     triangle.area_normal = -triangle.area_normal;
   }
@@ -125,26 +125,26 @@ void turn_alike(const ObjText& obj, const std::vector<std::uint32_t>& place_of,
 // the normals that the corners then refer to.
 std::vector<glm::vec3> complete_normals(const ObjText& obj,
                                         const std::vector<std::uint32_t>& place_of,
-                                        std::vector<Triangle>& triangles) {
+                                        std::vector<ObjTriangle>& triangles) {
   std::vector<glm::vec3> all_normals;
   for (const glm::vec3& normal : obj.normals) {
     all_normals.emplace_back(normalize(glm::dvec3{normal}));
   }
   // A file without smoothing groups means a smooth surface more often than a flat one.
-  const auto group_of = [&](const Triangle& triangle) {
+  const auto group_of = [&](const ObjTriangle& triangle) {
     return obj.has_smoothing_groups ? obj.faces[triangle.face].smoothing_group : 1;
   };
 
   FirstComeNumbers sums;
   std::vector<glm::dvec3> sum_of(obj.has_smoothing_groups ? 0 : place_of.size());
-  const auto sum_number = [&](const Triangle& triangle, const ObjCorner& corner) {
+  const auto sum_number = [&](const ObjTriangle& triangle, const ObjCorner& corner) {
     const std::uint32_t place = place_of[static_cast<std::size_t>(corner.position)];
     if (!obj.has_smoothing_groups) return place;
     const auto [number, is_new] = sums.number({place, group_of(triangle), 0});
     if (is_new) sum_of.emplace_back(0.0);
     return number;
   };
-  for (const Triangle& triangle : triangles) {
+  for (const ObjTriangle& triangle : triangles) {
     if (group_of(triangle) == 0) continue;
     for (const ObjCorner& corner : triangle.corners) {
       sum_of[sum_number(triangle, corner)] += triangle.area_normal;
@@ -153,7 +153,7 @@ std::vector<glm::vec3> complete_normals(const ObjText& obj,
 
   const auto first_sum = static_cast<std::uint32_t>(all_normals.size());
   for (const glm::dvec3& sum : sum_of) all_normals.emplace_back(normalize(sum));
-  for (Triangle& triangle : triangles) {
+  for (ObjTriangle& triangle : triangles) {
     std::optional<std::uint32_t> own;
     for (ObjCorner& corner : triangle.corners) {
       if (has_normal(obj, corner)) continue;
@@ -266,10 +266,10 @@ std::vector<Material> list_materials(const ObjText& obj, const std::filesystem::
   return materials;
 }
 
-void check_size(const std::vector<Triangle>& triangles, const ObjText& obj,
+void check_size(const std::vector<ObjTriangle>& triangles, const ObjText& obj,
                 const std::filesystem::path& file) {
   constexpr float kSmallest = 1e-9f;  // lengths are squared in binary32
-  for (const Triangle& triangle : triangles) {
+  for (const ObjTriangle& triangle : triangles) {
     const auto place = [&](const ObjCorner& corner) {
       return obj.positions[static_cast<std::size_t>(corner.position)];
     };
@@ -339,7 +339,7 @@ ObjModel load_obj_model(const std::filesystem::path& file, ThreadPool* pool) {
   const glm::dvec3 origin = far_middle(obj);
   if (origin != glm::dvec3{0.0}) obj = parse_obj_text(text, file.string(), origin, pool);
   std::vector<std::uint32_t> place_of, doubled;
-  std::vector<Triangle> triangles;
+  std::vector<ObjTriangle> triangles;
   // Few are doubled. Polygons are not taken apart in vain: that is slow.
   const bool are_triangles = obj.corners.size() == 3 * obj.faces.size();
   pool->for_each(are_triangles ? 2 : 1, [&](int task) {
@@ -387,7 +387,7 @@ ObjModel load_obj_model(const std::filesystem::path& file, ThreadPool* pool) {
   std::deque<GrowingPart> growing;  // which stay where they are
   std::vector<LastVertex> last_vertices(obj.positions.size());
   std::vector<std::optional<std::size_t>> part_of(model.materials.size());
-  for (const Triangle& triangle : triangles) {
+  for (const ObjTriangle& triangle : triangles) {
     const std::int32_t named = obj.faces[triangle.face].material;
     const std::size_t material = named >= 0 ? static_cast<std::size_t>(named) : without_material;
     if (!part_of[material]) {

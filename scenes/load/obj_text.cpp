@@ -14,23 +14,10 @@
 namespace softfocus {
 namespace {
 
-constexpr std::string_view kBlanks = " \t";
-
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
 
-// The line that is being read.
-struct Place {
-  const std::string& file;
-  std::size_t lines_before = 0;  // of its piece
-  std::size_t line = 0;          // of its piece, from 1
-};
+}  // namespace
 
-[[noreturn]] void fail(const Place& place, const std::string& reason) {
-  throw SceneError(place.file + ":" + std::to_string(place.lines_before + place.line) + ": " +
-                   reason);
-}
-
-// Takes the next word off the line; empty at its end.
 std::string_view next_word(std::string_view& line) {
   std::size_t start = 0;
   while (start < line.size() && is_blank(line[start])) ++start;
@@ -42,8 +29,23 @@ std::string_view next_word(std::string_view& line) {
 }
 
 std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t";
   text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
   return text.substr(0, text.find_last_not_of(kBlanks) + 1);
+}
+
+namespace {
+
+// The line that is being read.
+struct Place {
+  const std::string& file;
+  std::size_t lines_before = 0;  // of its piece
+  std::size_t line = 0;          // of its piece, from 1
+};
+
+[[noreturn]] void fail(const Place& place, const std::string& reason) {
+  throw SceneError(place.file + ":" + std::to_string(place.lines_before + place.line) + ": " +
+                   reason);
 }
 
 [[noreturn]] void fail_as_number(const Place& place, std::string_view word, int read, int needed) {

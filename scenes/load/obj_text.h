@@ -17,6 +17,11 @@
 
 namespace softfocus {
 
+/// Takes the next word off a line of an OBJ or MTL file; empty at its end.
+std::string_view next_word(std::string_view& line);
+/// Without the blanks before and after.
+std::string_view trimmed(std::string_view text);
+
 /// Indices from 0; -1 where the file gives none.
 struct ObjCorner {
   std::int32_t position = -1;

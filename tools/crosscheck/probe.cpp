@@ -17,20 +17,20 @@ namespace softfocus {
 namespace {
 
 // The driver, and the cases by which it is compared with one profile after another.
-struct Laboratory {
+struct ProbedDriver {
   const GlContext& gl;
   Shaders shaders;
   ThreadPool& pool;
   std::vector<Case> cases = crosscheck_cases();
 };
 
-Tally run(Laboratory& lab, const std::vector<std::string>& names, const Profile& profile) {
+Tally run(ProbedDriver& driver, const std::vector<std::string>& names, const Profile& profile) {
   Tally tally;
   for (const std::string& name : names) {
-    const auto found = std::find_if(lab.cases.begin(), lab.cases.end(), [&](const Case& one) {
+    const auto found = std::find_if(driver.cases.begin(), driver.cases.end(), [&](const Case& one) {
       return one.stage + '/' + one.name == name;
     });
-    found->run({lab.gl, lab.shaders, profile, lab.pool}, tally);
+    found->run({driver.gl, driver.shaders, profile, driver.pool}, tally);
   }
   return tally;
 }
@@ -45,14 +45,14 @@ std::string out_of(const Tally& tally) {
 }
 
 // Takes the candidate under which the least differs from the driver; the first of equals.
-ProbeFinding choose(Laboratory& lab, const std::string& question,
+ProbeFinding choose(ProbedDriver& driver, const std::string& question,
                     const std::vector<std::string>& cases,
                     const std::vector<ProfileCandidate>& candidates, Profile& profile) {
   ProbeFinding finding{question, "", ""};
   std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
   std::string rest;
   for (const ProfileCandidate& candidate : candidates) {
-    const Tally tally = run(lab, cases, candidate.profile);
+    const Tally tally = run(driver, cases, candidate.profile);
     if (tally.differing < least) {
       least = tally.differing;
       profile = candidate.profile;
@@ -151,9 +151,9 @@ std::vector<ProfileCandidate> clipping_candidates(const Profile& profile) {
 }
 
 // The driver's a * b + c at every texel.
-Image multiply_add_on_gl(Laboratory& lab, const std::array<Image, 3>& operands, bool precise) {
-  const GlProgram program = link_program(lab.gl, lab.shaders, "fullscreen.vert", "arithmetic.frag",
-                                         precise ? "#define PRECISE\n" : "");
+Image multiply_add_on_gl(ProbedDriver& driver, const std::array<Image, 3>& operands, bool precise) {
+  const GlProgram program = link_program(driver.gl, driver.shaders, "fullscreen.vert",
+                                         "arithmetic.frag", precise ? "#define PRECISE\n" : "");
   static constexpr std::array<const char*, 3> kNames{"first", "second", "third"};
   std::array<GlTexture, 3> textures;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -178,9 +178,9 @@ std::array<Image, 3> random_operands() {
   return operands;
 }
 
-ProbeFinding contraction_of_shaders(Laboratory& lab, bool precise) {
+ProbeFinding contraction_of_shaders(ProbedDriver& driver, bool precise) {
   const std::array<Image, 3> operands = random_operands();
-  const Image result = multiply_add_on_gl(lab, operands, precise);
+  const Image result = multiply_add_on_gl(driver, operands, precise);
   int unlike_fused = 0, unlike_unfused = 0, values = 0;
   for (int y = 0; y < 64; ++y) {
     const auto a = row<float>(operands[0], y), b = row<float>(operands[1], y),
@@ -206,9 +206,9 @@ Image constant(glm::vec4 value) {
 }
 
 // 2^-100 * 2^-30, which is subnormal, and a subnormal operand times 2^30.
-ProbeFinding denormals_of_shaders(Laboratory& lab, Profile& profile) {
+ProbeFinding denormals_of_shaders(ProbedDriver& driver, Profile& profile) {
   const Image result =
-      multiply_add_on_gl(lab,
+      multiply_add_on_gl(driver,
                          {constant({0x1p-100f, 0x1p-130f, 1.0f, 1.0f}),
                           constant({0x1p-30f, 0x1p30f, 1.0f, 1.0f}), constant(glm::vec4{0.0f})},
                          true);
@@ -224,7 +224,7 @@ ProbeFinding denormals_of_shaders(Laboratory& lab, Profile& profile) {
 
 // Between the centres of a black and a white texel: the weight at 256 steps of 1/256, and
 // how many different weights 16 times as many positions give.
-ProbeFinding weight_table(Laboratory& lab) {
+ProbeFinding weight_table(ProbedDriver& driver) {
   constexpr int kSteps = 256;
   constexpr int kFine = 16;
   Image texels = make_image(Format::rgba16f, 2, 1);
@@ -239,7 +239,8 @@ ProbeFinding weight_table(Laboratory& lab) {
   const Sampler sampler{Filter::bilinear, Wrap::clamp_to_edge, Wrap::clamp_to_edge};
   const GlTexture picture = upload(make_texture(texels), sampler);
   const GlTexture coordinates = upload(places);
-  const GlProgram program = link_program(lab.gl, lab.shaders, "fullscreen.vert", "sample.frag");
+  const GlProgram program =
+      link_program(driver.gl, driver.shaders, "fullscreen.vert", "sample.frag");
   const GlTarget target = make_target(std::array{Format::rgba32f}, kSteps, kFine, false);
   set_texture(program, "picture", 0, picture);
   set_texture(program, "coordinates", 1, coordinates);
@@ -292,19 +293,19 @@ Probe probe_driver(const Driver& driver) {
 #endif
 
 Probe probe_context(const GlContext& gl, const std::string& name, ThreadPool& pool) {
-  Laboratory lab{gl, {}, pool};
+  ProbedDriver driver{gl, {}, pool};
   Probe probe;
   probe.renderer = gl.renderer() + ", OpenGL " + gl.version();
   Profile& profile = probe.profile.profile;
   const auto ask = [&](const std::string& question, const std::vector<std::string>& cases,
                        const std::vector<ProfileCandidate>& candidates) {
-    probe.findings.push_back(choose(lab, question, cases, candidates, profile));
+    probe.findings.push_back(choose(driver, question, cases, candidates, profile));
   };
   using P = Profile;
 
-  probe.findings.push_back(denormals_of_shaders(lab, profile));
-  probe.findings.push_back(contraction_of_shaders(lab, false));
-  probe.findings.push_back(contraction_of_shaders(lab, true));
+  probe.findings.push_back(denormals_of_shaders(driver, profile));
+  probe.findings.push_back(contraction_of_shaders(driver, false));
+  probe.findings.push_back(contraction_of_shaders(driver, true));
   ask("floats stored as halves", {"store/rgba16f-around-every-half"},
       variants(profile, &P::half_store,
                {{HalfRounding::nearest_even, "nearest even"},
@@ -314,7 +315,7 @@ Probe probe_context(const GlContext& gl, const std::string& name, ThreadPool& po
       variants(
           profile, &P::unorm_store,
           {{UnormRounding::half_up, "half up"}, {UnormRounding::nearest_even, "nearest even"}}));
-  probe.findings.push_back(weight_table(lab));
+  probe.findings.push_back(weight_table(driver));
   ask("texture filtering",
       {"bilinear-rgba16f/64x32-repeat", "bilinear-rgba16f/37x19-clamp",
        "bilinear-rgba8/64x32-repeat", "bilinear-rgba8/37x19-clamp"},

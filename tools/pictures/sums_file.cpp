@@ -24,7 +24,7 @@ constexpr std::string_view kSumsMagic{"softfocus sums\n\0", 16};
 constexpr int kSumsForm = 1;
 constexpr std::size_t kBeforeHeader = kSumsMagic.size() + sizeof(std::uint32_t);
 constexpr std::size_t kMostHeaderBytes = 65536;
-constexpr std::size_t kColours = 3, kTexelHalves = 4;
+constexpr std::size_t kColours = 3;
 
 // The only member of the header that differs from shard to shard.
 constexpr const char* kShard = "shard";

@@ -107,7 +107,7 @@ struct TurnSums {
 };
 
 /// Adds a frame's time and what was done in it.
-void add_frame(const ScheduledFrame& frame, double ms, TurnSums& sums) {
+void note_frame(const ScheduledFrame& frame, double ms, TurnSums& sums) {
   sums.impostor_ms.push_back(ms);
   (frame.step == ImpostorStep::renew    ? sums.renew_ms
    : frame.step == ImpostorStep::recall ? sums.recall_ms
@@ -272,7 +272,7 @@ int turn_impostor(const ReliefOptions& options) {
                               [&] { return std::chrono::steady_clock::now() < end; });
       changed = draw_impostor(impostor.shown, matrices, stage.shown, frame_pool);
     });
-    add_frame(done, ms, sums);
+    note_frame(done, ms, sums);
     if (done.takes || done.renewals > 0 || done.step == ImpostorStep::recall) shares = {};
     sums.most_bytes = std::max(sums.most_bytes, bytes_of_impostor(impostor));
     if (!has_own_thread || is_measured(frame)) {

@@ -11,7 +11,7 @@
 namespace softfocus {
 namespace {
 
-constexpr std::size_t kTexelBytes = bytes_per_texel(Format::rgba16f);
+constexpr std::size_t kColourBytes = bytes_per_texel(Format::rgba16f);
 
 // Calls `visit` with two pixels beside each other at a time, which lie together in a quad, or with
 // the last one of an odd row.
@@ -36,7 +36,7 @@ void move_back(const VisibilityTile& tile, std::size_t number) {
       if (before == number) continue;
       const int column = x + static_cast<int>(i);
       std::memcpy(texel_at(layer, {column, y}), texel_at(tile.layer(before), {column, y}),
-                  kTexelBytes);
+                  kColourBytes);
     }
   });
 }
@@ -282,7 +282,7 @@ void copy_to_samples(const VisibilityTile& tile) {
         const auto from = static_cast<std::size_t>(-1 - id);
         const int column = x + static_cast<int>(i);
         std::memcpy(texel_at(tile.layer(s), {column, y}), texel_at(tile.layer(from), {column, y}),
-                    kTexelBytes);
+                    kColourBytes);
       }
     }
   });

@@ -9,7 +9,7 @@ namespace softfocus {
 namespace {
 
 /// The eye comes no nearer than this, in the object's radii, as far as is foreseen.
-constexpr double kNearest = 1.2;
+constexpr double kNearestEye = 1.2;
 
 // Pieces of variable slices: so many triangles, or such a part of a warp. Each piece finds the
 // places of all vertices of its objects.
@@ -406,7 +406,7 @@ ScheduledFrame update_scheduled(ScheduledImpostor& impostor, ReliefMaker& maker,
                            up,    height_px,     pixel_tangent_of(camera, height_px),
                            pool,  impostor.frame};
   ++impostor.frame;
-  impostor.motion = eye_motion(maker.middle, kNearest * maker.radius_m,
+  impostor.motion = eye_motion(maker.middle, kNearestEye * maker.radius_m,
                                impostor.eye.value_or(camera.eye), camera.eye);
   impostor.eye = camera.eye;
   ScheduledFrame frame;

@@ -10,7 +10,7 @@
 namespace softfocus {
 namespace {
 
-constexpr int kBandRows = 32;
+constexpr int kLaidRows = 32;
 
 ReliefForm form_of(const SceneImpostors& impostors, const ImpostorChoice& choice,
                    const CameraMatrices& camera, int height_px) {
@@ -132,8 +132,6 @@ std::vector<std::uint8_t> prepare_view(SceneImpostors& impostors, const CameraMa
 
 // --- laying them into layers ---
 
-constexpr std::size_t kTexelHalves = 4;
-
 Rectangle rows_of(const Rectangle& area, int first, int end) {
   return {area.x_begin, std::max(area.y_begin, first), area.x_end, std::min(area.y_end, end)};
 }
@@ -222,9 +220,9 @@ void lay(SceneImpostors& impostors, std::span<Image* const> layers, EdgePictures
   const LaidInto into{
       layers, edges, changed,
       float_to_half(clear_colour(*impostors.maker.scene).w, HalfRounding::nearest_even)};
-  const int bands = (height + kBandRows - 1) / kBandRows;
+  const int bands = (height + kLaidRows - 1) / kLaidRows;
   for_each_with(impostors.workers, pool, bands, [&](int band, SceneImpostors::Worker& worker) {
-    const int first = band * kBandRows, end = std::min(first + kBandRows, height);
+    const int first = band * kLaidRows, end = std::min(first + kLaidRows, height);
     ThreadPool& one = alone(worker, pool.isa());
     for (std::size_t i = 0; i < impostors.shown_count; ++i) {
       const SceneImpostors::Shown& shown = impostors.shown[i];

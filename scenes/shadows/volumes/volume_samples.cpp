@@ -17,9 +17,9 @@ PlaneOnScreen on_screen(const FacetPlane& plane, const PixelSpace& space) {
           height_over(plane, space.eye)};
 }
 
-class Sampler {
+class FacetSampler {
  public:
-  Sampler(const SampledScene& scene, const PixelSpace& space)
+  FacetSampler(const SampledScene& scene, const PixelSpace& space)
       : facets_(scene.facets),
         light_(scene.light),
         lit_(scene.lit),
@@ -68,7 +68,7 @@ std::size_t place_in_band(int x, int row, int width) {
 
 bool find_samples(const SampledScene& scene, const MaskRows& rows, const ShadowView& view,
                   const PixelSpace& space, Band& band, std::vector<FarSample>& far) {
-  Sampler sampler{scene, space};
+  FacetSampler sampler{scene, space};
   const int across = (view.width + kSampleBlockSize - 1) / kSampleBlockSize;
   const std::size_t blocks = static_cast<std::size_t>(across) * kSampleBlockRows;
   const std::size_t pixels = blocks * kSampleBlockPixels;

@@ -28,10 +28,10 @@ void copy_log(const std::string& log, GLsizei room, GLsizei* length, GLchar* to)
 constexpr char kFile = 'f';
 
 std::string with_named_files(std::string text) {
-  constexpr std::string_view kLine = "\n#line ";
-  for (std::size_t at = 0; (at = text.find(kLine, at)) != text.npos; at += kLine.size()) {
+  constexpr std::string_view kDirective = "\n#line ";
+  for (std::size_t at = 0; (at = text.find(kDirective, at)) != text.npos; at += kDirective.size()) {
     const std::size_t end = std::min(text.find('\n', at + 1), text.size());
-    const std::size_t file = text.find(' ', at + kLine.size()) + 1;
+    const std::size_t file = text.find(' ', at + kDirective.size()) + 1;
     if (file == 0 || file >= end || text.find_first_not_of("0123456789", file) < end) continue;
     text.insert(end, 1, '"');
     text.insert(file, std::string{'"', kFile});

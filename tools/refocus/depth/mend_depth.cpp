@@ -249,9 +249,9 @@ std::size_t mend_edges(DepthMap& map, ThreadPool& pool) {
   const DepthMap from = map;
   std::vector<std::size_t> mended(static_cast<std::size_t>(map.height), 0);
   constexpr std::array<std::array<int, 2>, 4> kDirections{{{1, 0}, {0, 1}, {1, 1}, {1, -1}}};
-  constexpr float kJump = 0.05f;   // of the nearer surface: less is no edge
-  constexpr float kFlat = 0.2f;    // of the jump: a surface changes less from pixel to pixel
-  constexpr float kApart = 0.02f;  // of the jump: what is as near to a surface belongs to it
+  constexpr float kJump = 0.05f;         // of the nearer surface: less is no edge
+  constexpr float kFlat = 0.2f;          // of the jump: a surface changes less from pixel to pixel
+  constexpr float kNearSurface = 0.02f;  // of the jump: what is as near to a surface belongs to it
   pool.for_each(map.height, [&](int y) {
     for (int x = 0; x < map.width; ++x) {
       const float own = from.metres[place_of(x, y, map.width)];
@@ -266,8 +266,8 @@ std::size_t mend_edges(DepthMap& map, ThreadPool& pool) {
           const float a = at(-reach), b = at(reach);
           const float jump = std::fabs(b - a);
           if (!(jump > kJump * std::min(a, b)) || !(jump > largest_jump)) continue;
-          const bool between =
-              own > std::min(a, b) + kApart * jump && own < std::max(a, b) - kApart * jump;
+          const bool between = own > std::min(a, b) + kNearSurface * jump &&
+                               own < std::max(a, b) - kNearSurface * jump;
           const bool flat = std::fabs(at(-reach - 1) - a) <= kFlat * jump &&
                             std::fabs(at(reach + 1) - b) <= kFlat * jump;
           if (!between || !flat) continue;
