@@ -4,12 +4,15 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "raster/images/texel.h"
+#include "scenes/draw/seen_facets.h"
 #include "scenes/lens_views/accumulation.h"
 #include "scenes/load/load_scene.h"
 #include "scenes/shadows/maps/map_errors.h"
@@ -322,4 +325,23 @@ TEST_CASE("what is kept of shadows changes no bit, whatever moves from frame to 
       check();
     }
   }
+}
+
+TEST_CASE("objects that something else is drawn for are no facets that take shadows") {
+  const Scene scene = test::shadow_scene(ShadowKind::projected);
+  ThreadPool pool(1);
+  constexpr int kWidth = 48, kHeight = 32;
+  const CameraMatrices camera = camera_matrices(scene.camera, 0.0, kWidth, kHeight);
+  NumberedScene numbered = number_triangles(scene, {}, pool.isa());
+  const auto seen_of_ball = [&](std::span<const std::uint8_t> hidden) {
+    const std::vector<SeenFacet> seen =
+        draw_seen_facets(numbered, scene, camera, 0.0, kWidth, kHeight, 1, pool, {}, hidden)[0];
+    const std::size_t first =
+        (scene.meshes[0].indices.size() + 2 * scene.meshes[1].indices.size()) / 3;
+    return std::count_if(seen.begin(), seen.end(), [&](SeenFacet facet) {
+      return shows_facet(facet) && facet_of(facet) >= first;
+    });
+  };
+  CHECK(seen_of_ball({}) > 10);
+  CHECK(seen_of_ball(std::vector<std::uint8_t>{0, 0, 0, 1}) == 0);
 }

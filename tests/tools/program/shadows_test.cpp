@@ -7,6 +7,9 @@
 
 #include "tests/support/cli_refused.h"
 #include "tests/support/gl_drivers.h"
+#include "tests/support/shadow_scene.h"
+#include "tools/cli/errors.h"
+#include "tools/options/scene_options.h"
 #include "tools/pictures/image_file.h"
 
 using namespace softfocus;
@@ -206,4 +209,16 @@ TEST_CASE("shadows and render --shadows: what does not go together is one clear 
           {"'siz'", "did you mean 'size'?"});
   refused({"render", "figures", "-o", "a.png", "--shadows", "projected", "--method", "ray-traced"},
           {"ray-traced", "--shadows none"});
+}
+
+TEST_CASE("--light moves the first light and no other") {
+  Scene scene = test::shadow_scene(ShadowKind::none);
+  const glm::vec3 sun = scene.lights[1].position_or_direction;
+  SceneLook look;
+  look.light = glm::vec3{1.0f, 2.0f, 3.0f};
+  set_look(look, scene);
+  CHECK(scene.lights[0].position_or_direction == glm::vec3{1.0f, 2.0f, 3.0f});
+  CHECK(scene.lights[1].position_or_direction == sun);
+  scene.lights.clear();
+  CHECK_THROWS_WITH_AS(set_look(look, scene), "--light: the scene has no light", UsageError);
 }
