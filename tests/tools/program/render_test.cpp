@@ -286,24 +286,6 @@ TEST_CASE("render: --show coc is grey, and black where the focus was found") {
   CHECK(some_light);
 }
 
-TEST_CASE("render: --show wireframe has the drawing's pixels along edges and is empty between") {
-  const Image wires = rendered_picture("cube-room", {"--show", "wireframe"}).image;
-  const Image drawn =
-      rendered_picture("cube-room", {"--show", "pinhole", "--multisample", "1"}).image;
-  int lines = 0, between = 0;
-  const glm::vec3 background{load_texel(wires, 0, 0)};
-  for (int y = 0; y < wires.height; ++y) {
-    for (int x = 0; x < wires.width; ++x) {
-      const glm::vec3 wire{load_texel(wires, x, y)};
-      lines += wire == glm::vec3{load_texel(drawn, x, y)} ? 1 : 0;
-      between += wire == background ? 1 : 0;
-    }
-  }
-  CHECK(lines + between >= wires.width * wires.height);
-  CHECK(lines > wires.width);
-  CHECK(between > 2 * lines);
-}
-
 TEST_CASE("render: --show depth is lighter where it is farther") {
   const Image map = rendered_picture("figures", {"--show", "depth"}).image;
   const Image before = rendered_picture("figures", {"--show", "pinhole"}).image;
