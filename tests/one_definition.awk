@@ -1,21 +1,31 @@
 # Fails if two files define a type of one name: no compiler tells, and the linker joins the members of
-# both. In unnamed namespaces types and constants differ from file to file of a folder that
-# CMakeLists.txt compiles together (unit_of()). It reads what clang-format has laid out.
+# both. Nor may files that may be compiled together (unit_of()) have types or constants of one name in
+# their unnamed namespaces. It reads what clang-format has laid out.
 #
 #   awk -f one_definition.awk FILE...
 #
 # A file named no_... stands in for others; a .inl file and the part after `#else` of a file of
 # kernels lie in the namespace of a vector unit (raster/lanes/for_each_isa.inl).
 
+# As softfocus_folder() and softfocus_part() in CMake files have them.
 function unit_of(file) {
   if (file ~ /^tools\/boards\//) return file  # programs
-  if (file ~ /^tools\/(gl|crosscheck)\//) return "drivers"
-  if (file ~ /^tools\/(files|pictures)\//) return "files"
-  if (file ~ /^tools\/(refocus|effects)\//) return "refocus"
-  if (match(file, /^(raster\/shaders\/glsl|dof\/(auto|c|fixed|measure)|scenes\/(files|load)|tools\/(golden|stress|page))\//)) {
+  if (file ~ /^tools\/(gl|crosscheck)\//) return "tools/drivers"
+  if (file ~ /^tools\/(files|pictures)\//) return "tools/files"
+  if (file ~ /^tools\/(refocus|effects)\//) return "tools/refocus"
+  if (match(file, /^(raster\/shaders\/glsl|dof\/(auto|c|fixed|measure)|scenes\/(files|load))\//) ||
+      match(file, /^tools\/(golden|stress|page)\//)) {
     return substr(file, 1, RLENGTH - 1)
   }
   return substr(file, 1, index(file, "/") - 1)
+}
+
+function define(name) {
+  if (name in defined && defined[name] != FILENAME) {
+    print FILENAME ": " name " is defined in " defined[name] ", too"
+    wrong = 1
+  }
+  defined[name] = FILENAME
 }
 
 FNR == 1 {
@@ -44,23 +54,15 @@ FNR == 1 {
     if (in_unit || FILENAME !~ /[.]cpp$/) next
     name = unit_of(FILENAME) "'s " name
   }
-  if (name in defined && defined[name] != FILENAME) {
-    print FILENAME ": " name " is defined in " defined[name] ", too"
-    wrong = 1
-  }
-  defined[name] = FILENAME
+  define(name)
 }
 
-/^constexpr .* k[A-Z][A-Za-z0-9]* ?[={]/ && depth > 0 && scope[depth] == "{" && !in_unit && FILENAME ~ /[.]cpp$/ {
-  match($0, / k[A-Z][A-Za-z0-9]* ?[={]/)
+/^constexpr .* k[A-Z]/ && scope[depth] == "{" && !in_unit && FILENAME ~ /[.]cpp$/ {
+  match($0, / k[A-Z][A-Za-z0-9]* ?[={[]/)
   name = substr($0, RSTART + 1)
-  sub(/[ ={].*/, "", name)
+  sub(/[^A-Za-z0-9].*/, "", name)
   name = unit_of(FILENAME) "'s {::" name
-  if (name in defined && defined[name] != FILENAME) {
-    print FILENAME ": " name " is defined in " defined[name] ", too"
-    wrong = 1
-  }
-  defined[name] = FILENAME
+  define(name)
 }
 
 END { exit wrong }

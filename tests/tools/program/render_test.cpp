@@ -286,6 +286,29 @@ TEST_CASE("render: --show coc is grey, and black where the focus was found") {
   CHECK(some_light);
 }
 
+TEST_CASE("render: --show wireframe has the drawing along triangles' edges and nothing between") {
+  const TemporaryDirectory folder;
+  const std::string scene = folder.file("cube.toml");
+  write_file(scene, "background = [0.3, 0.4, 0.5]\n" + kCube);
+  const Image wires = rendered_picture(scene, {"--show", "wireframe"}).image;
+  const Image drawn = rendered_picture(scene, {"--show", "pinhole"}).image;
+  const glm::vec3 background{load_texel(drawn, 0, 0)};
+  int lines = 0, between = 0, other = 0;
+  for (int y = 0; y < wires.height; ++y) {
+    for (int x = 0; x < wires.width; ++x) {
+      const glm::vec3 surface{load_texel(drawn, x, y)}, wire{load_texel(wires, x, y)};
+      if (surface == background) {
+        other += wire == background ? 0 : 1;
+      } else {
+        (wire == surface ? lines : wire == background ? between : other) += 1;
+      }
+    }
+  }
+  CHECK(other == 0);
+  CHECK(lines > 20);
+  CHECK(between > lines);
+}
+
 TEST_CASE("render: --show depth is lighter where it is farther") {
   const Image map = rendered_picture("figures", {"--show", "depth"}).image;
   const Image before = rendered_picture("figures", {"--show", "pinhole"}).image;
