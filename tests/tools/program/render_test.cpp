@@ -289,7 +289,7 @@ TEST_CASE("render: --show coc is grey, and black where the focus was found") {
 TEST_CASE("render: --show wireframe has the drawing along triangles' edges and nothing between") {
   const TemporaryDirectory folder;
   const std::string scene = folder.file("cube.toml");
-  write_file(scene, "background = [0.3, 0.4, 0.5]\n" + kCube);
+  write_file(scene, "background = [0.3, 0.4, 0.5]\n" + kCube + "cells = 1\n");
   const Image wires = rendered_picture(scene, {"--show", "wireframe"}).image;
   const Image drawn = rendered_picture(scene, {"--show", "pinhole"}).image;
   const glm::vec3 background{load_texel(drawn, 0, 0)};
