@@ -302,6 +302,7 @@ ReliefTexture draw_relief(ReliefMaker& maker, const ReliefCamera& camera, glm::d
 
 ReliefTexture make_relief(ReliefMaker& maker, const ReliefView& view, const ReliefForm& form,
                           ThreadPool& pool) {
+  if (maker.trace) return maker.trace(maker, view, form, pool);
   return draw_relief(maker, relief_camera(maker, view, form.width, form.height), view.eye, form,
                      pool);
 }

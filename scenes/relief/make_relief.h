@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <string_view>
 #include <vector>
@@ -50,6 +51,10 @@ struct ReliefMaker {
   std::vector<std::uint8_t> code_of_half;  ///< linear_to_srgb8() of each half
   Image picture;
   std::vector<Material> unlit;  ///< the scene's, with neither light nor highlight
+  /// make_relief()'s work, if it is not the pipeline's: trace_relief().
+  std::function<ReliefTexture(const ReliefMaker& maker, const ReliefView& view,
+                              const ReliefForm& form, ThreadPool& pool)>
+      trace = {};
 };
 
 /// Without points: middle and radius are for the caller to set. `pool` is the one that will draw.

@@ -131,7 +131,7 @@ int show_box(const ReliefOptions& options) {
   pictures.shown = make_image(Format::rgba16f, width, height);
   clear_image(pictures.shown, clear, Profile{});
   BoxMemory memory;
-  draw_box(box, matrices, warp_rule(options), memory, pictures.shown, pool, &pictures.faces);
+  draw_box(box, matrices, box_rule(options), memory, pictures.shown, pool, &pictures.faces);
   pictures.unseen = unseen_pixels(box, matrices, pictures.drawn, clear.w, pool);
   print_box(box, pictures, matrices.eye, options.output == "-" ? stderr : stdout);
   write_relief_output(options.output, encode(painted(pictures, options.part), options.format));

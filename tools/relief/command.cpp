@@ -73,7 +73,7 @@ struct ReliefAction {
   int (*work)(const ReliefOptions&);
   bool writes_picture;
   /// Options that it reads beside those of all.
-  std::array<std::string_view, 33> options;
+  std::array<std::string_view, 37> options;
 };
 constexpr std::array kReliefActions{
     ReliefAction{"make",
@@ -93,7 +93,7 @@ constexpr std::array kReliefActions{
                  true,
                  {"-o", "--format", "--scene-path", "--frame", "--size", "--texels", "--depth-bits",
                   "--normals", "--yaw", "--pitch", "--distance", "--show", "--resampling",
-                  "--fixed", "--join"}},
+                  "--fixed", "--join", "--slices", "--bisections"}},
     ReliefAction{"bench",
                  bench_relief,
                  false,
@@ -132,6 +132,10 @@ constexpr std::array kReliefActions{
                   "--parallax",
                   "--projection",
                   "--box",
+                  "--slices",
+                  "--bisections",
+                  "--traced",
+                  "--light-pixels",
                   "--texels",
                   "--json"}},
     ReliefAction{"walk",
@@ -177,6 +181,8 @@ constexpr std::array<std::string_view, 8> kOfScene{"--scene-path", "--frame", "-
                                                    "--traced",     "--unlit"};
 constexpr std::array<std::string_view, 3> kOfHeights{"--colour", "--height", "--empty"};
 
+constexpr std::array<std::string_view, 3> kWarpOptions{"--resampling", "--fixed", "--join"};
+
 void check_pairs(const CLI::App& parser, const ReliefOptions& options) {
   for (const std::string_view name : kOfScene) {
     if (options.height_field && is_given(parser, std::string{name})) {
@@ -188,19 +194,31 @@ void check_pairs(const CLI::App& parser, const ReliefOptions& options) {
       throw UsageError(std::string{name} + ": is of a height field; give --height-field too");
     }
   }
-  if (options.action == "turn" && !options.box && is_given(parser, "--texels")) {
-    throw UsageError("--texels: an impostor has as many as the view needs; it is of turn --box");
+  if (options.action == "turn" && !options.box) {
+    if (is_given(parser, "--texels")) {
+      throw UsageError("--texels: an impostor has as many as the view needs; it is of turn --box");
+    }
+    if (options.slices > 0) throw UsageError("--slices: six faces have them; give --box too");
+  }
+  if (options.slices == 0 && is_given(parser, "--bisections")) {
+    throw UsageError("--bisections: they follow slices; give --slices too");
+  }
+  for (const std::string_view name : kWarpOptions) {
+    if (options.slices > 0 && is_given(parser, std::string{name})) {
+      throw UsageError(std::string{name} + ": --slices warps nothing");
+    }
+  }
+  if (options.lights_pixels && !options.moving_light) {
+    throw UsageError("--light-pixels: lights pixels anew each frame; give --moving-light too");
   }
 }
 
-/// Options of turn: only an atlas reads these, only an impostor these, and an atlas does not read
-/// these.
+/// Options of turn: only an atlas reads these, and only an impostor these.
 constexpr std::array<std::string_view, 3> kAtlasOptions{"--views", "--hemisphere", "--parallax"};
-constexpr std::array<std::string_view, 14> kImpostorOptions{
-    "--tolerance",     "--no-sprites", "--regions",  "--turns",     "--cache",
-    "--schedule",      "--aside",      "--slice-ms", "--predict",   "--moving-light",
-    "--update-frames", "--approach",   "--levels",   "--projection"};
-constexpr std::array<std::string_view, 3> kWarpOptions{"--resampling", "--fixed", "--join"};
+constexpr std::array<std::string_view, 16> kImpostorOptions{
+    "--tolerance", "--no-sprites", "--regions", "--turns",        "--cache",         "--schedule",
+    "--aside",     "--slice-ms",   "--predict", "--moving-light", "--update-frames", "--approach",
+    "--levels",    "--projection", "--traced",  "--light-pixels"};
 
 void check_turn(const CLI::App& parser, const ReliefOptions& options) {
   if (options.rival && options.box) {
@@ -259,6 +277,12 @@ void write_relief_output(const std::string& output, std::span<const std::byte> b
 WarpRule warp_rule(const ReliefOptions& options) {
   return {options.resampling, options.fixed ? PlaceNumbers::fixed : PlaceNumbers::floats,
           options.join_texels};
+}
+
+BoxRule box_rule(const ReliefOptions& options) {
+  BoxRule rule{.warp = warp_rule(options)};
+  if (options.slices > 0) rule.march = MarchSettings{options.slices, options.bisections};
+  return rule;
 }
 
 Scene relief_scene(const ReliefOptions& options) {

@@ -35,10 +35,13 @@ void check_materials(const Scene& scene) {
 
 }  // namespace
 
+void check_can_trace() {
+  if (traced_relief_missing().empty()) return;
+  throw UsageError("--traced: " + std::string{traced_relief_missing()});
+}
+
 int make_relief_file(const ReliefOptions& options) {
-  if (options.traced && !traced_relief_missing().empty()) {
-    throw UsageError("--traced: " + std::string{traced_relief_missing()});
-  }
+  if (options.traced) check_can_trace();
   if (options.height_field) {
     const ReliefTexture relief = relief_of_height_file(options);
     check_relief_size(relief, options.input);

@@ -124,6 +124,10 @@ void add_relief_options(CLI::App& parser, const std::shared_ptr<ReliefOptions>& 
   number("join", "TEXELS",
          "Neighbours that come farther apart are not joined, a hole stays; by default all are", 2.0,
          WarpRule::kJoinAll, options->join_texels);
+  number("slices", "N", "box, turn --box: a pixel's ray is followed through N slices; no warp", 1,
+         kMostSlices, options->slices);
+  number("bisections", "N", "And on between the last two slices, by N halvings", 0, kMostBisections,
+         options->bisections);
   begin_group(parser, "Turn");
   number("turns", "N", "Full turns", 1, 100, options->turns);
   number("cache", "MB", "Of stale reliefs that are kept, in millions of bytes", 0.0, 1e5,
@@ -142,6 +146,9 @@ void add_relief_options(CLI::App& parser, const std::shared_ptr<ReliefOptions>& 
   add_flag(parser, "--moving-light",
            "The scene's lights turn against the eye; reliefs are unlit, and lit each frame",
            options->moving_light);
+  add_flag(parser, "--light-pixels",
+           "With --moving-light: pixels are lit after the warp, in place of texels before it",
+           options->lights_pixels);
   number("approach", "F",
          "In place of a turn the eye comes straight nearer, from F times the distance", 1.0, 100.0,
          options->approach);

@@ -11,6 +11,7 @@
 #include <glm/vec3.hpp>
 
 #include "scenes/relief/impostors/impostor_schedule.h"
+#include "scenes/relief/impostors/relief_box.h"
 #include "tools/cli/option_values.h"
 #include "tools/options/run_options.h"
 
@@ -64,9 +65,12 @@ struct ReliefOptions {
   bool hemisphere = false;
   int parallax = 1;  ///< steps of the atlas
   bool moving_light = false;
+  bool lights_pixels = false;
   double approach = 0.0;  ///< the eye begins so many times as far away; 0: it turns
   int levels = 1;
   bool box = false;  ///< a turn of six faces
+  int slices = 0;    ///< of six faces, in place of warps; 0: none
+  int bisections = 0;
   int runs = 20;
   bool json = false;
   PoolOptions pool;
@@ -77,6 +81,8 @@ void add_relief_options(CLI::App& parser, const std::shared_ptr<ReliefOptions>& 
 
 WarpRule warp_rule(const ReliefOptions& options);
 
+BoxRule box_rule(const ReliefOptions& options);
+
 /// A point in the middle of the relief's box, and the box's diagonal.
 glm::dvec3 relief_middle(const ReliefTexture& relief);
 double relief_diagonal(const ReliefTexture& relief);
@@ -86,6 +92,9 @@ Camera camera_before(const ReliefTexture& relief, const ReliefOptions& options);
 
 /// `v` turned about a unit axis (Rodrigues).
 glm::dvec3 turned_about(glm::dvec3 v, glm::dvec3 axis, double degrees);
+
+/// Throws UsageError unless this build can trace rays.
+void check_can_trace();
 
 /// A relief of the picture of heights that is the input.
 ReliefTexture relief_of_height_file(const ReliefOptions& options);

@@ -16,6 +16,7 @@
 #include "scenes/relief/impostors/impostor_schedule.h"
 #include "scenes/relief/impostors/octahedral_atlas.h"
 #include "scenes/relief/impostors/relief_box.h"
+#include "scenes/traced_relief/traced_relief.h"
 #include "tools/cli/commands.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/timing.h"
@@ -56,7 +57,8 @@ ImpostorSettings turn_settings(const ReliefOptions& options) {
           .tolerance_texels = options.tolerance,
           .regions = options.regions,
           .texels_per_pixel = options.texels_per_pixel,
-          .sprites = !options.no_sprites && !options.moving_light,
+          .sprites = !options.no_sprites && (!options.moving_light || options.lights_pixels),
+          .lights_pixels = options.lights_pixels,
           .levels = options.levels,
           .cache_bytes = static_cast<std::size_t>(options.cache_mb * 1e6)};
 }
@@ -225,6 +227,10 @@ int turn_impostor(const ReliefOptions& options) {
                      std::to_string(scene.materials.size()) + " materials; at most " +
                      std::to_string(kMostReliefMaterials) + " are lit anew");
   }
+  if (options.traced) {
+    check_can_trace();
+    stage.maker.trace = trace_relief;
+  }
   // If the update has a thread of its own, the frames have one less.
   const bool has_own_thread = options.schedule == TurnSchedule::own_thread;
   ThreadPool frame_pool{options.schedule == TurnSchedule::serial ? 1
@@ -235,6 +241,8 @@ int turn_impostor(const ReliefOptions& options) {
   const ReliefLights laid = relief_lights(scene.ambient_light, lights);
   ImpostorSettings settings = turn_settings(options);
   if (options.moving_light) settings.lights = &laid;
+  PixelLights pixel_lights{&laid};
+  PixelLights* by_pixel = options.lights_pixels ? &pixel_lights : nullptr;
   const auto move_lights = [&](int frame) {
     if (!options.moving_light) return;
     turn_lights(scene, stage.maker.middle, -360.0 * frame / options.frames, lights);
@@ -270,7 +278,7 @@ int turn_impostor(const ReliefOptions& options) {
       done = update_scheduled(impostor, stage.maker, settings, matrices, stage.camera.up,
                               options.size.height, frame_pool,
                               [&] { return std::chrono::steady_clock::now() < end; });
-      changed = draw_impostor(impostor.shown, matrices, stage.shown, frame_pool);
+      changed = draw_impostor(impostor.shown, matrices, stage.shown, frame_pool, by_pixel);
     });
     note_frame(done, ms, sums);
     if (done.takes || done.renewals > 0 || done.step == ImpostorStep::recall) shares = {};
@@ -361,7 +369,7 @@ int turn_box(const ReliefOptions& options) {
   turn_drawn_once(
       stage, "box", found,
       [&](const CameraMatrices& camera) {
-        draw_box(box, camera, warp_rule(options), memory, stage.shown, stage.pool);
+        draw_box(box, camera, box_rule(options), memory, stage.shown, stage.pool);
         return Rectangle{0, 0, options.size.width, options.size.height};
       },
       [&](const CameraMatrices& camera) {

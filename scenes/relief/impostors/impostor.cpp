@@ -228,20 +228,32 @@ void warp_impostor(Impostor& impostor, const ImpostorSettings& settings, glm::dv
   const std::size_t level = impostor.warped_level;
   ReliefTexture& texture = level == 0 ? drawn.texture : drawn.coarser[level - 1].texture;
   const ReliefExtent& extent = level == 0 ? drawn.extent : drawn.coarser[level - 1].extent;
-  if (settings.lights != nullptr) light_relief(texture, *settings.lights, eye, pool);
+  if (settings.lights != nullptr && !settings.lights_pixels) {
+    light_relief(texture, *settings.lights, eye, pool);
+  }
   const std::optional<PlaneRectangle> place = warped_extent(texture, extent, eye);
   if (!place) return;
   warp_relief(texture, extent, eye, *place, settings.warp, impostor.warped, pool);
+  if (settings.lights_pixels) {
+    std::vector<std::uint32_t> unlit = std::exchange(texture.colours, normals_as_colours(texture));
+    warp_relief(texture, extent, eye, *place, settings.warp, impostor.warped_normals, pool);
+    texture.colours = std::move(unlit);
+  }
   impostor.warped_for = eye;
 }
 
 Rectangle draw_impostor(const Impostor& impostor, const CameraMatrices& camera, Image& picture,
-                        ThreadPool& pool) {
+                        ThreadPool& pool, PixelLights* lights) {
   if (!impostor.drawn || impostor.warped.place.width == 0) return {0, 0, 0, 0};
+  const ReliefTexture& texture = texture_of(*impostor.drawn, impostor.warped_level);
   const PlaneMapping mapping =
-      plane_mapping(texture_of(*impostor.drawn, impostor.warped_level), camera,
-                    impostor.warped.place, picture.width, picture.height);
-  map_relief(impostor.warped, mapping, picture, pool);
+      plane_mapping(texture, camera, impostor.warped.place, picture.width, picture.height);
+  if (lights != nullptr) {
+    draw_lit_pixels(texture, {impostor.warped, impostor.warped_normals}, mapping, camera, *lights,
+                    picture, pool);
+  } else {
+    map_relief(impostor.warped, mapping, picture, pool);
+  }
   return mapping.area;
 }
 

@@ -12,6 +12,7 @@
 #include <optional>
 #include <vector>
 
+#include "scenes/relief/impostors/light_pixels.h"
 #include "scenes/relief/light_relief.h"
 #include "scenes/relief/make_relief.h"
 #include "scenes/relief/warp/map_relief.h"
@@ -33,6 +34,9 @@ struct ImpostorSettings {
   /// If not null, reliefs are unlit, and lit by these before each warp. They may change from
   /// frame to frame, without `sprites`. Not with warps aside.
   const ReliefLights* lights = nullptr;
+  /// With `lights`: these light pixels, when the impostor is drawn; `sprites` may be on. Of several
+  /// materials all pixels have the one of most texels.
+  bool lights_pixels = false;
   /// 1: a relief has one resolution. More: its coarser ones, too. Then it is drawn with
   /// texels_per_pixel, kept until its finest texels are `sharpness` pixels wide, and warped at the
   /// coarsest level whose texels are no wider than a pixel. Not with warps aside.
@@ -64,6 +68,7 @@ std::size_t bytes_of(const DrawnRelief& relief);
 struct Impostor {
   std::optional<DrawnRelief> drawn;  ///< none before the first view, and if nothing was seen
   WarpedRelief warped;
+  WarpedRelief warped_normals;     ///< of lights_pixels
   glm::dvec3 warped_for{0.0};      ///< the eye
   std::size_t warped_level = 0;    ///< 0: the relief itself; else coarser[warped_level - 1]
   std::vector<DrawnRelief> cache;  ///< stale ones, the oldest first
@@ -135,8 +140,8 @@ ImpostorStep update_impostor(Impostor& impostor, ReliefMaker& maker,
                              glm::dvec3 up, int height_px, ThreadPool& pool);
 
 /// Lays it over a picture of the view, if it shows anything. Returns the pixels that it may have
-/// changed.
+/// changed. With `lights`, lights_pixels.
 Rectangle draw_impostor(const Impostor& impostor, const CameraMatrices& camera, Image& picture,
-                        ThreadPool& pool);
+                        ThreadPool& pool, PixelLights* lights = nullptr);
 
 }  // namespace softfocus

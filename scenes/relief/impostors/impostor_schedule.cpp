@@ -97,6 +97,10 @@ void run_piece(ImpostorUpdate& update, ReliefMaker& maker, const ImpostorSetting
                const std::optional<DrawnRelief>& old, ThreadPool& pool) {
   int piece = update.done++;
   if (update.draws) {
+    if (piece < update.draw_parts && maker.trace) {
+      update.texture = make_relief(maker, update.view, update.form, pool);
+      return;
+    }
     if (piece == 0) {
       update.texture = begin_relief(
           maker, relief_camera(maker, update.view, update.form.width, update.form.height),
@@ -108,7 +112,7 @@ void run_piece(ImpostorUpdate& update, ReliefMaker& maker, const ImpostorSetting
       return;
     }
     if (piece == update.draw_parts) {
-      read_relief(maker, update.form, update.view.eye, update.texture, pool);
+      if (!maker.trace) read_relief(maker, update.form, update.view.eye, update.texture, pool);
       update.relief = known_relief(std::move(update.texture), settings, update.view.eye, pool);
       // The eye may have been foreseen where it does not come.
       if (update.warps && update.relief && old &&
@@ -287,6 +291,7 @@ void begin_update(ScheduledImpostor& impostor, const ScheduledWork& work, Schedu
         triangle_count(*work.maker.scene) / kPartTriangles, 1, kMostUpdateFrames));
     update.strips = kVariableStrips;
   }
+  if (work.maker.trace) update.draw_parts = 1;
   // The last warp's picture is memory to use again.
   std::swap(update.warped, impostor.spare_warp);
   std::swap(update.strip, impostor.spare_strip);

@@ -118,16 +118,18 @@ std::vector<std::uint8_t> better_faces(const ReliefBox& box, std::size_t face) {
   return better;
 }
 
-/// A face without the texels that a seen one shows better; none if that is all of them.
-std::optional<BoxFace> left_of(const BoxFace& face, unsigned seen) {
+/// A face without the texels that a seen one shows better; none if that is all of them. If it is
+/// marched, they stay where they are: a ray that passed through them would come out in any hollow
+/// behind.
+std::optional<BoxFace> left_of(const BoxFace& face, unsigned seen, bool marches) {
   BoxFace left = face;
   ReliefTexture& relief = left.texture;
   relief.normals = {};
   left.better = {};
   for (std::size_t at = 0; at < face.better.size(); ++at) {
     if ((face.better[at] & seen) == 0) continue;
-    relief.depths[at] = empty_depth(relief.depth_bits);
-    relief.colours[at] = 0;
+    relief.colours[at] = marches ? kStopsRays : 0;
+    if (!marches) relief.depths[at] = empty_depth(relief.depth_bits);
   }
   const std::optional<ReliefExtent> extent = relief_extent(relief);
   if (!extent) return std::nullopt;
@@ -194,16 +196,18 @@ unsigned faces_seen(const ReliefBox& box, glm::dvec3 eye) {
   return seen;
 }
 
-void draw_box(const ReliefBox& box, const CameraMatrices& camera, const WarpRule& rule,
+void draw_box(const ReliefBox& box, const CameraMatrices& camera, const BoxRule& rule,
               BoxMemory& memory, Image& picture, ThreadPool& pool,
               std::vector<std::uint8_t>* shown) {
   const unsigned seen = faces_seen(box, camera.eye);
-  if (memory.seen != seen) {
+  const bool marches = rule.march.has_value();
+  if (memory.seen != seen || memory.marches != marches) {
     memory.seen = seen;
+    memory.marches = marches;
     pool.for_each(static_cast<int>(kBoxFaces), [&](int i) {
       const auto face = static_cast<std::size_t>(i);
       memory.left[face].reset();
-      if ((seen >> i & 1u) != 0) memory.left[face] = left_of(*box.faces[face], seen);
+      if ((seen >> i & 1u) != 0) memory.left[face] = left_of(*box.faces[face], seen, marches);
     });
   }
   const std::vector<std::size_t> order = in_order(box, seen, camera.eye);
@@ -219,11 +223,22 @@ void draw_box(const ReliefBox& box, const CameraMatrices& camera, const WarpRule
         warped_extent(face.texture, face.extent, camera.eye);
     if (!place) continue;
     for (std::size_t pixel = 0; pixel < before.size(); ++pixel) before[pixel] = depth_at(pixel);
-    warp_relief(face.texture, face.extent, camera.eye, *place, rule, memory.warped, pool);
-    PlaneMapping mapping =
-        plane_mapping(face.texture, camera, *place, picture.width, picture.height);
-    if (i != order[0]) mapping.behind_m = static_cast<float>(kHasTexels * texel_side(face.texture));
-    map_relief(memory.warped, mapping, picture, pool);
+    const float behind_m =
+        i == order[0] ? 0.0f : static_cast<float>(kHasTexels * texel_side(face.texture));
+    if (rule.march) {
+      MarchMapping march =
+          march_mapping(face.texture, face.extent, camera, picture.width, picture.height);
+      march.mapping.behind_m = behind_m;
+      march_relief(face.texture, march,
+                   {rule.march->slices, rule.march->bisections, /*passes_behind=*/false}, picture,
+                   pool);
+    } else {
+      warp_relief(face.texture, face.extent, camera.eye, *place, rule.warp, memory.warped, pool);
+      PlaneMapping mapping =
+          plane_mapping(face.texture, camera, *place, picture.width, picture.height);
+      mapping.behind_m = behind_m;
+      map_relief(memory.warped, mapping, picture, pool);
+    }
     if (shown == nullptr) continue;
     for (std::size_t pixel = 0; pixel < before.size(); ++pixel) {
       if (depth_at(pixel) != before[pixel]) (*shown)[pixel] = static_cast<std::uint8_t>(i);

@@ -3,7 +3,7 @@
 // of Clua 2004; Oliveira, Bishop and McAllister 2000). Each is an orthographic picture of all of
 // the object from its side, so a point hidden from one face may be seen from another. An eye
 // outside of the box sees the one, two or three faces before whose planes it lies. Each is
-// pre-warped and mapped, and the nearer of two at a pixel is taken.
+// pre-warped and mapped, or marched by slices (6.5), and the nearer of two at a pixel is taken.
 //
 // A point in a hollow may be on no face, wherever the eye is: unseen_pixels() finds such.
 
@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "scenes/relief/make_relief.h"
-#include "scenes/relief/warp/map_relief.h"
+#include "scenes/relief/warp/march_relief.h"
 
 namespace softfocus {
 
@@ -61,17 +61,24 @@ unsigned faces_seen(const ReliefBox& box, glm::dvec3 eye);
 /// Kept from one view of a box to the next: the seen faces, without the texels that are left out.
 struct BoxMemory {
   unsigned seen = 0;
+  bool marches = false;
   std::array<std::optional<BoxFace>, kBoxFaces> left;
   WarpedRelief warped;
 };
 std::size_t bytes_of(const BoxMemory& memory);
+
+/// How faces are seen.
+struct BoxRule {
+  WarpRule warp{};
+  std::optional<MarchSettings> march{};  ///< in place of the warp
+};
 
 /// Lays all faces that are seen over an RGBA16F picture with depth in alpha, first the one whose
 /// plane is farthest from the eye. A pixel of a later face is written if it is nearer by more than
 /// kHasTexels of its texels: of a surface on two faces the first shows. `shown`, if any, gets for
 /// each pixel the last face that was written there; other pixels keep their value. `memory` serves
 /// one box.
-void draw_box(const ReliefBox& box, const CameraMatrices& camera, const WarpRule& rule,
+void draw_box(const ReliefBox& box, const CameraMatrices& camera, const BoxRule& rule,
               BoxMemory& memory, Image& picture, ThreadPool& pool,
               std::vector<std::uint8_t>* shown = nullptr);
 

@@ -50,6 +50,7 @@ bool meets_surface(const ReliefTexture& relief, const PreWarp& warp, const March
     const bool is_there = texel_on_ray(relief, warp.step_m, ray, behind, found);
     const bool is_behind = is_there && found.depth_m <= behind;
     if (!is_behind || !(was_before || found.depth_m >= before)) {
+      if (is_behind && !settings.passes_behind) return false;
       was_before = is_there && !is_behind;
       continue;
     }
@@ -104,12 +105,13 @@ void march_relief(const ReliefTexture& relief, const MarchMapping& march,
                          {u, v, u * warp.k3 - warp.k1, v * warp.k3 - warp.k2}, texel)) {
         continue;
       }
+      const std::uint32_t colour = relief.colours[texel.at];
+      if (colour == kStopsRays) continue;
       const float far = static_cast<float>(mapping.height_m) / q *
                         (1.0f + warp.k3 * texel.depth_m) /
                         (1.0f - mapping.source_per_m * texel.depth_m);
       const float cut = far < 65504.0f ? far : 65504.0f;
-      if (!(cut < load_texel<Format::rgba16f>(picture, x, y).w)) continue;
-      const std::uint32_t colour = relief.colours[texel.at];
+      if (!(cut + mapping.behind_m < load_texel<Format::rgba16f>(picture, x, y).w)) continue;
       store_texel<Format::rgba16f>(
           picture, x, y,
           {linear[colour & 255u], linear[colour >> 8 & 255u], linear[colour >> 16 & 255u], cut},

@@ -11,6 +11,8 @@
 // Marching needs no order and no memory, and finds both sides of a step of depth. But it takes
 // `slices` looks a pixel, and can fall through a steep surface between two slices.
 
+#include <cstdint>
+
 #include "raster/images/image.h"
 #include "raster/threads/parallel.h"
 #include "scenes/relief/warp/map_relief.h"
@@ -18,9 +20,17 @@
 namespace softfocus {
 
 struct MarchSettings {
-  int slices = 64;     ///< 1 or more
-  int bisections = 0;  ///< 0: slices alone
+  int slices = 64;     ///< 1 to kMostSlices
+  int bisections = 0;  ///< 0 to kMostBisections; 0: slices alone
+  /// Whether a ray can pass behind a texel and meet another. If not, it shows nothing: other faces
+  /// of a box show what is there.
+  bool passes_behind = true;
 };
+inline constexpr int kMostSlices = 4096;
+inline constexpr int kMostBisections = 16;
+
+/// The colour of a texel that stops rays and shows nothing.
+inline constexpr std::uint32_t kStopsRays = 1;
 
 /// The places where a camera's rays meet the plane, in the relief's own texels.
 struct MarchMapping {

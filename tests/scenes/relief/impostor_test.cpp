@@ -3,9 +3,11 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "raster/images/texel.h"
 #include "scenes/make/shapes.h"
+#include "scenes/relief/impostors/impostor_schedule.h"
 #include "scenes/surfaces/surface_stages.h"
 #include "tests/support/relief_scenes.h"
 #include "tests/support/test_images.h"
@@ -111,6 +113,101 @@ TEST_CASE("a picture with an impostor has the same bits on every vector unit") {
   for (const Isa isa : available_isas()) {
     ThreadPool pool(3, isa);
     CHECK_MESSAGE(equal(picture_by(pool), right), isa_name(isa));
+  }
+}
+
+TEST_CASE("pixels that are lit after the warp look as texels that are lit before it") {
+  Scene scene = torus_scene();
+  scene.materials[0].specular = glm::vec3{0.5f};
+  scene.lights.push_back({LightKind::point, {1.0f, 1.5f, 1.0f}, {0.1f, 0.3f, 0.6f}});
+  ThreadPool pool(2);
+  ReliefMaker maker = prepare_relief(scene, 0.0, pool);
+  std::vector<Light> lights = scene.lights;
+  const ReliefLights laid = relief_lights(scene.ambient_light, lights);
+  PixelLights by_pixel{&laid};
+  Impostor of_texels, of_pixels;
+  ImpostorSettings by_texels;
+  by_texels.depth_bits = 16;
+  by_texels.tolerance_texels = 1e4;
+  by_texels.lights = &laid;
+  ImpostorSettings by_pixels = by_texels;
+  by_pixels.lights_pixels = true;
+  // Drawn from the front, lit and seen from elsewhere; at the last view nothing but light moves.
+  for (const double frame : {0.0, 15.0, 15.0}) {
+    const CameraMatrices camera = seen_at(scene, frame);
+    update_impostor(of_texels, maker, by_texels, camera, scene.camera.up, kSize, pool);
+    const ImpostorStep step =
+        update_impostor(of_pixels, maker, by_pixels, camera, scene.camera.up, kSize, pool);
+    if (lights[0].position_or_direction.x < 0.0f) CHECK(step == ImpostorStep::sprite);
+    if (step == ImpostorStep::sprite) {
+      warp_impostor(of_texels, by_texels, camera.eye, pixel_tangent_of(camera, kSize), pool);
+    }
+    Image texels = cleared(scene), pixels = texels;
+    draw_impostor(of_texels, camera, texels, pool);
+    draw_impostor(of_pixels, camera, pixels, pool, &by_pixel);
+    int seen = 0, apart = 0, bright = 0;
+    for (int y = 0; y < kSize; ++y) {
+      for (int x = 0; x < kSize; ++x) {
+        const glm::vec4 right = load_texel(texels, x, y), own = load_texel(pixels, x, y);
+        CHECK(right.w == own.w);
+        if (right.w == load_texel(cleared(scene), 0, 0).w) continue;
+        ++seen;
+        bright += right.x > 0.3f ? 1 : 0;
+        for (int i = 0; i < 3; ++i) {
+          apart += std::fabs(std::fmin(own[i], 1.0f) - right[i]) > 0.08f ? 1 : 0;
+        }
+      }
+    }
+    CHECK(seen > 1500);
+    CHECK(bright > 300);
+    CHECK(apart < seen / 20);
+    if (frame > 0.0) lights[0].position_or_direction = {-1.0f, 0.3f, 0.2f};
+  }
+  Image covered = make_image(Format::rgba16f, kSize, kSize);
+  clear_image(covered, {1.0f, 0.0f, 0.0f, 0.5f}, Profile{});
+  const Image before = covered;
+  draw_impostor(of_pixels, seen_at(scene, 15.0), covered, pool, &by_pixel);
+  CHECK(equal(covered, before));
+}
+
+TEST_CASE("what traces reliefs makes all of them, by whatever schedule") {
+  const Scene scene = torus_scene();
+  ThreadPool pool(2);
+  ReliefMaker maker = prepare_relief(scene, 0.0, pool);
+  ReliefMaker drawing = prepare_relief(scene, 0.0, pool);
+  int traced = 0;
+  // By another maker, whose reliefs are painted blue to be known.
+  maker.trace = [&](const ReliefMaker&, const ReliefView& view, const ReliefForm& form,
+                    ThreadPool& by) {
+    ++traced;
+    ReliefTexture relief = make_relief(drawing, view, form, by);
+    for (std::uint32_t& colour : relief.colours) {
+      if (colour != 0) colour = 0xFFFF0000u;
+    }
+    return relief;
+  };
+  for (const ScheduleKind kind : {ScheduleKind::in_frame, ScheduleKind::slices}) {
+    traced = 0;
+    ScheduledImpostor impostor = scheduled_impostor(
+        {.kind = kind, .update_frames = kind == ScheduleKind::slices ? 3 : 0}, pool.isa());
+    ImpostorSettings settings;
+    settings.tolerance_texels = 2.0;
+    int renewals = 0;
+    for (int frame = 0; frame < 60; frame += 2) {
+      const CameraMatrices camera = seen_at(scene, frame);
+      renewals +=
+          update_scheduled(impostor, maker, settings, camera, scene.camera.up, kSize, pool, [] {
+            return true;
+          }).renewals;
+      Image picture = cleared(scene);
+      draw_impostor(impostor.shown, camera, picture, pool);
+      const glm::vec4 middle = load_texel(picture, kSize / 2, kSize / 2 + 18);
+      CHECK(middle == glm::vec4{0.0f, 0.0f, 1.0f, middle.w});
+    }
+    finish_update(impostor);
+    CHECK(renewals > 2);
+    CHECK(traced >= renewals - 1);
+    CHECK(traced <= renewals);
   }
 }
 

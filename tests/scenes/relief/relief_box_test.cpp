@@ -121,6 +121,65 @@ TEST_CASE("a ring is whole from everywhere, its faces laid over each other by de
   }
 }
 
+TEST_CASE("a box by slices is the ring too, the nearer the more there are") {
+  const Scene scene = test::lit_mesh(make_torus(0.7, 0.3, 48, 24));
+  ThreadPool pool(2);
+  ReliefMaker maker = prepare_relief(scene, 0.0, pool);
+  const ReliefBox box = draw_relief_box(maker, {.texels = 96, .depth_bits = 16}, pool);
+  const CameraMatrices camera = box_seen_from({2.0, 2.0, 2.0});
+  const Image drawn = drawn_from(scene, camera, pool);
+  BoxMemory memory;
+  const auto wrong_by = [&](const BoxRule& rule) {
+    Image shown = far_picture();
+    draw_box(box, camera, rule, memory, shown, pool);
+    int wrong = 0, lies_wrong = 0;
+    for (int y = 0; y < kBoxSize; ++y) {
+      for (int x = 0; x < kBoxSize; ++x) {
+        const float right = load_texel(drawn, x, y).w, own = load_texel(shown, x, y).w;
+        wrong += (right < kBoxFar) != (own < kBoxFar) ? 1 : 0;
+        lies_wrong += right < kBoxFar && own < kBoxFar && std::fabs(own - right) > 0.1f ? 1 : 0;
+      }
+    }
+    if (!rule.march || rule.march->slices >= 32) CHECK(lies_wrong < 40);
+    return wrong;
+  };
+  const int by_warp = wrong_by({}), by_8 = wrong_by({.march = MarchSettings{8}});
+  const int by_128 = wrong_by({.march = MarchSettings{128}});
+  CHECK(by_warp > 0);
+  CHECK(by_8 > 2 * by_128);
+  CHECK(by_128 < 160);
+  CHECK(wrong_by({.march = MarchSettings{32, 6}}) < 160);
+  CHECK(wrong_by({}) == by_warp);  // the memory is of either kind
+}
+
+TEST_CASE("a ray below a rim does not come out in the hollow that the rim encloses") {
+  // A ring, and under its hole a plate, which the upper face sees through the hole.
+  Scene scene = test::lit_mesh(make_torus(0.7, 0.2, 48, 24));
+  scene.objects[0].position.y = 0.8;
+  scene.meshes.push_back(make_cube(1.4, 1));
+  Object plate;
+  plate.mesh = 1;
+  plate.position.y = -0.9;
+  plate.scale.y = 0.05;
+  scene.objects.push_back(plate);
+  ThreadPool pool(2);
+  ReliefMaker maker = prepare_relief(scene, 0.0, pool);
+  const ReliefBox box = draw_relief_box(maker, {.texels = 96, .depth_bits = 16}, pool);
+  const CameraMatrices camera = box_seen_from({2.5, 1.6, 2.5});
+  const Image drawn = drawn_from(scene, camera, pool);
+  Image shown = far_picture();
+  BoxMemory memory;
+  draw_box(box, camera, {.march = MarchSettings{64, 4}}, memory, shown, pool);
+  int gained = 0;
+  for (int y = 0; y < kBoxSize; ++y) {
+    for (int x = 0; x < kBoxSize; ++x) {
+      const bool is = load_texel(drawn, x, y).w < kBoxFar;
+      gained += !is && load_texel(shown, x, y).w < kBoxFar ? 1 : 0;
+    }
+  }
+  CHECK(gained < 60);
+}
+
 TEST_CASE("of a ball there is nothing that no face has") {
   const Scene scene = test::lit_mesh(make_sphere(1.0, 48, 24));
   ThreadPool pool(2);

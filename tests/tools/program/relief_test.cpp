@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "raster/images/texel.h"
+#include "scenes/traced_relief/traced_relief.h"
 #include "tests/support/cli_refused.h"
 #include "tests/support/skip.h"
 #include "tools/pictures/image_file.h"
@@ -295,6 +296,37 @@ TEST_CASE("relief: a box of six faces is shown, measured and written") {
                    "--every", "4", "--size", "48x48", "--zoom", "0.2"});
   CHECK(turn.err == "");
   CHECK(contains(turn.out, "no face has"));
+  const std::string sliced = folder.file("sliced.npy"), warped = folder.file("image.npy");
+  Words by_slices = words;
+  by_slices.insert(by_slices.end(), {"--slices", "32", "--bisections", "4", "-o", sliced});
+  REQUIRE(run_program(by_slices).status == 0);
+  CHECK(read_image_file(sliced).image.bytes != read_image_file(warped).image.bytes);
+  check_refused(folder, {"relief", "turn", "figures", "--slices", "8"}, 2, {"--slices", "--box"});
+  check_refused(folder, {"relief", "turn", "figures", "--box", "--bisections", "2"}, 2,
+                {"--bisections", "--slices"});
+  check_refused(folder, {"relief", "turn", "figures", "--box", "--slices", "9", "--join", "3"}, 2,
+                {"--join", "--slices"});
+}
+
+TEST_CASE("relief turn: pixels are lit with a moving light alone, and renewals are traced") {
+  const TemporaryDirectory folder;
+  const Words turn{"relief", "turn", "docs/examples/sphere.toml", "--frames", "8", "--every", "8",
+                   "--size", "48x48"};
+  const auto with = [&](const Words& more) {
+    Words words = turn;
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  check_refused(folder, with({"--light-pixels"}), 2, {"--light-pixels", "--moving-light"});
+  check_refused(folder, with({"--box", "--traced"}), 2, {"--traced", "six faces"});
+  CHECK(run_program(with({"--moving-light", "--light-pixels"})).status == 0);
+  const ProgramRun traced = run_program(with({"--traced"}));
+  if (traced_relief_missing().empty()) {
+    CHECK(traced.status == 0);
+    CHECK(contains(traced.out, "renewals "));
+  } else {
+    CHECK(traced.status == 2);
+  }
 }
 
 TEST_CASE("relief turn: an octahedral atlas goes the same turn, and says what it takes") {
