@@ -249,6 +249,7 @@ PreparedScene prepare_surfaces(const Scene& scene, const Profile& profile, Threa
   PreparedScene prepared{};
   prepared.scene = &scene;
   prepared.has_transparent = has_transparent(scene);
+  prepared.triangles = triangle_count(scene);
   prepared.pass.profile = profile;
   prepared.pass.isa = pool.isa();
   prepared.transparent_pass.profile = profile;
@@ -571,6 +572,16 @@ void draw_triangles(PreparedScene& prepared, const CameraMatrices& camera, doubl
   if (prepared.shadows) take_shown_colours(picture, edges->coverage, edges->other, pool);
 }
 
+std::size_t triangles_of(const PreparedScene& prepared) {
+  const Scene& scene = *prepared.scene;
+  std::size_t triangles = 0;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    if (is_hidden(prepared, i)) continue;
+    triangles += scene.meshes[scene.objects[i].mesh].indices.size() / 3;
+  }
+  return triangles;
+}
+
 // Lays the stand-ins into a picture that has been drawn without what they stand for.
 void lay_stand_ins(PreparedScene& prepared, std::span<Image* const> layers, EdgePictures* edges,
                    ThreadPool& pool) {
@@ -599,10 +610,14 @@ void lay_stand_ins(PreparedScene& prepared, std::span<Image* const> layers, Edge
 void draw_layers(PreparedScene& prepared, const CameraMatrices& camera, double frame,
                  Image& picture, std::span<Image> behind, ThreadPool& pool,
                  std::optional<double> behind_before_m, EdgePictures* edges) {
+  if (prepared.stand_ins != nullptr) {
+    prepared.hidden =
+        prepared.stand_ins->prepare(camera, frame, picture.width, picture.height, pool);
+  }
+  prepared.triangles = triangles_of(prepared);
   if (prepared.stand_ins == nullptr) {
     return draw_triangles(prepared, camera, frame, picture, behind, pool, behind_before_m, edges);
   }
-  prepared.hidden = prepared.stand_ins->prepare(camera, frame, picture.width, picture.height, pool);
   // An impostor may come to lie before what is in focus, which then is behind.
   draw_triangles(prepared, camera, frame, picture, behind, pool, {}, edges);
   prepared.hidden.clear();

@@ -105,9 +105,12 @@ struct PreparedScene {
   std::shared_ptr<const StandIns> stand_ins{};  ///< if any
   /// Objects that are not drawn, though they cast shadows: an entry each, or none at all.
   std::vector<std::uint8_t> hidden{};
-  bool keeps_depth = false;  ///< `depth` is wanted once the scene is drawn
+  bool keeps_depth = false;   ///< `depth` is wanted once the scene is drawn
+  std::size_t triangles = 0;  ///< of the objects that draw_layers() has drawn as such
   /// Told how many points of soft lights have been drawn by; may be empty.
   std::function<void(int points)> on_light_points = {};
+  /// Told where shadows begin to be made ready for the lights, and where they are; may be empty.
+  std::function<void(bool are_placed)> on_shadows = {};
 };
 
 /// Opaque surfaces of more chunks (kChunkTriangles) are drawn in several passes, the same bits: a

@@ -27,39 +27,51 @@ ProjectedShadows without_triangles(const Facets& facets, const ShadowLight& ligh
   return {lit_sides(facets, light), std::vector<std::size_t>(facets.receivers.size() + 1), {}};
 }
 
+bool is_projected(const SceneShadows& shadows, ShadowKind kind) {
+  return kind == ShadowKind::projected && !shadows.by_rays;
+}
+
 // Of one light, that has come or has moved.
 void place_light(SceneShadows& shadows, std::size_t i, ShadowKind kind, const ShadowLight& light,
-                 ThreadPool& pool) {
+                 std::span<const std::uint8_t> wanted, ThreadPool& pool) {
   shadows.placed[i] = light;
-  const bool is_projected = kind == ShadowKind::projected && !shadows.by_rays;
-  shadows.projected[i] = is_projected ? project_by_grid(shadows.facets, light, pool)
-                                      : without_triangles(shadows.facets, light);
+  shadows.projected[i] = is_projected(shadows, kind)
+                             ? project_by_grid(shadows.facets, light, pool, wanted)
+                             : without_triangles(shadows.facets, light);
   shadows.maps[i] = {};
   shadows.volumes[i] = {};
-  for (std::vector<VolumeBits>& of_layer : shadows.volume_bits) of_layer[i] = {};
+  for (std::vector<KeptBits>& of_layer : shadows.kept_bits) of_layer[i] = {};
   if (kind == ShadowKind::volumes) {
     shadows.volumes[i] = make_shadow_volumes(shadows.facets, shadows.joined, light);
   }
 }
 
-// Draws the volumes of the lights that have them, or takes their bits of the frame before.
-void draw_volumes(SceneShadows& shadows, std::size_t layer, const ShadowView& view, glm::dvec3 eye,
-                  ThreadPool& pool) {
+// Draws projected shadows, dark sides and volumes of the lights that have moved, and takes the
+// others' bits of the frame before.
+void draw_bits(SceneShadows& shadows, std::size_t layer, const ShadowView& view, glm::dvec3 eye,
+               ThreadPool& pool) {
   std::vector<std::uint8_t>& mask = shadows.masks[layer];
-  for (std::size_t i = 0; i < shadows.volumes.size(); ++i) {
-    if (shadows.volumes[i].casters.empty()) continue;
+  std::vector<KeptBits>& kept = shadows.kept_bits[layer];
+  std::vector<const ProjectedShadows*> moved(kept.size());
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    if (kept[i].mask.empty()) moved[i] = &shadows.projected[i];
+  }
+  draw_shadow_mask(cut_shadows(shadows.facets, moved, shadows.seen[layer], view, pool), view, mask,
+                   pool);
+  for (std::size_t i = 0; i < moved.size(); ++i) {
     const auto bit = static_cast<std::uint8_t>(1u << i);
-    VolumeBits& bits = shadows.volume_bits[layer][i];
-    if (bits.mask.empty()) {
-      bits.rays = draw_volume_mask(shadows.facets, shadows.joined, shadows.volumes[i],
-                                   shadows.projected[i].lit, bit, shadows.seen[layer], view, eye,
-                                   shadows.volume_count, mask, pool);
-      bits.mask.resize(mask.size());
-      for (std::size_t p = 0; p < mask.size(); ++p) bits.mask[p] = mask[p] & bit;
-    } else {
-      for (std::size_t p = 0; p < mask.size(); ++p) mask[p] |= bits.mask[p];
+    if (moved[i] != nullptr && !shadows.volumes[i].casters.empty()) {
+      kept[i].rays = draw_volume_mask(shadows.facets, shadows.joined, shadows.volumes[i],
+                                      shadows.projected[i].lit, bit, shadows.seen[layer], view, eye,
+                                      shadows.volume_count, mask, pool);
     }
-    shadows.volume_rays += bits.rays;
+    shadows.volume_rays += kept[i].rays;
+    if (moved[i] != nullptr) {
+      kept[i].mask.resize(mask.size());
+      for (std::size_t p = 0; p < mask.size(); ++p) kept[i].mask[p] = mask[p] & bit;
+    } else {
+      for (std::size_t p = 0; p < mask.size(); ++p) mask[p] |= kept[i].mask[p];
+    }
   }
 }
 
@@ -143,16 +155,13 @@ void draw_masks(SceneShadows& shadows, const Scene& scene, std::span<const Light
     draw_masks_by_rays(shadows, view, camera.eye, pool);
     return;
   }
-  const auto of_lights = pointers_to(shadows.projected);
   draw_maps(shadows, lights, map_camera(scene, camera), profile, pool);
   shadows.masks.resize(shadows.seen.size());
   shadows.volume_rays = 0;
   const bool softens = has_terminators(lights, shadows);
   for (std::size_t i = 0; i < shadows.seen.size(); ++i) {
     shadows.masks[i].resize(shadows.seen[i].size());
-    draw_shadow_mask(cut_shadows(shadows.facets, of_lights, shadows.seen[i], view, pool), view,
-                     shadows.masks[i], pool);
-    draw_volumes(shadows, i, view, camera.eye, pool);
+    draw_bits(shadows, i, view, camera.eye, pool);
     look_up_maps(shadows, i, view, camera.eye, pool);
     if (softens) soften_layer(shadows, lights, i, view, camera.eye, pool);
   }
@@ -396,20 +405,27 @@ void forget(SceneShadows& shadows, bool all) {
   if (all) shadows.frame.reset();
 }
 
-void place_shadows(SceneShadows& shadows, const Scene& scene, std::span<const Light> lights,
-                   double frame, ThreadPool& pool) {
-  const std::size_t count = shadows.lights.size();
+namespace {
+
+void set_facets(SceneShadows& shadows, const Scene& scene, std::span<const Light> lights,
+                double frame) {
   const bool has_facets = shadows.frame && (*shadows.frame == frame || !shadows.moves);
-  if (!has_facets) {
-    shadows.facets = scene_facets(scene, frame);
-    if (has_terminators(lights, shadows)) shadows.surfaces = curved_surfaces(scene, frame);
-    const bool has_volumes = std::any_of(
-        shadows.lights.begin(), shadows.lights.end(),
-        [&](std::size_t number) { return lights[number].shadows == ShadowKind::volumes; });
-    if (has_volumes) shadows.joined = join_facets(shadows.facets);
-    shadows.placed.clear();
-    shadows.frame = frame;
-  }
+  if (has_facets) return;
+  shadows.facets = scene_facets(scene, frame);
+  if (has_terminators(lights, shadows)) shadows.surfaces = curved_surfaces(scene, frame);
+  const bool has_volumes = std::any_of(
+      shadows.lights.begin(), shadows.lights.end(),
+      [&](std::size_t number) { return lights[number].shadows == ShadowKind::volumes; });
+  if (has_volumes) shadows.joined = join_facets(shadows.facets);
+  shadows.placed.clear();
+  shadows.frame = frame;
+}
+
+// Lights that have moved are projected onto the `wanted` receivers alone, or onto all. A light that
+// stays while these change is projected onto all, once.
+void place_lights(SceneShadows& shadows, std::span<const Light> lights,
+                  std::span<const std::uint8_t> wanted, bool wanted_are_new, ThreadPool& pool) {
+  const std::size_t count = shadows.lights.size();
   const bool is_first = shadows.placed.empty();
   shadows.placed.resize(count);
   shadows.projected.resize(count);
@@ -418,9 +434,32 @@ void place_shadows(SceneShadows& shadows, const Scene& scene, std::span<const Li
   for (std::size_t i = 0; i < count; ++i) {
     const Light& light = lights[shadows.lights[i]];
     const ShadowLight placed = shadow_light(light);
-    if (!is_first && placed == shadows.placed[i]) continue;
-    place_light(shadows, i, light.shadows, placed, pool);
+    const bool stays = !is_first && placed == shadows.placed[i];
+    if (stays && (shadows.projected[i].of_all || !wanted_are_new)) continue;
+    place_light(shadows, i, light.shadows, placed, stays ? std::span<const std::uint8_t>{} : wanted,
+                pool);
   }
+}
+
+// The receivers that any layer shows, an entry for each.
+std::vector<std::uint8_t> seen_receivers(const SceneShadows& shadows) {
+  std::vector<std::uint8_t> seen(shadows.facets.receivers.size());
+  for (const std::vector<SeenFacet>& layer : shadows.seen) {
+    SeenFacet last = 0;
+    for (const SeenFacet here : layer) {
+      if (here != last && shows_facet(here)) seen[shadows.facets.receiver_of[facet_of(here)]] = 1;
+      last = here;
+    }
+  }
+  return seen;
+}
+
+}  // namespace
+
+void place_shadows(SceneShadows& shadows, const Scene& scene, std::span<const Light> lights,
+                   double frame, ThreadPool& pool) {
+  set_facets(shadows, scene, lights, frame);
+  place_lights(shadows, lights, {}, true, pool);
 }
 
 MaskDraws cut_shadows(const SceneShadows& shadows, const CameraMatrices& camera, int width,
@@ -435,14 +474,18 @@ void add_shadows(const PreparedScene& prepared, const CameraMatrices& camera, do
   SceneShadows& shadows = *prepared.shadows;
   const Scene& scene = *prepared.scene;
   const int width = layers[0]->width, height = layers[0]->height;
-  place_shadows(shadows, scene, lights, frame, pool);
   SeenFrom from{camera, frame, width, height, layers.size(), behind_before, prepared.hidden};
-  if (!shadows.seen_from || *shadows.seen_from != from) {
+  const bool sees_others = !shadows.seen_from || *shadows.seen_from != from;
+  if (sees_others) {
     shadows.seen = draw_seen_facets(shadows.numbered, scene, camera, frame, width, height,
                                     layers.size(), pool, behind_before, prepared.hidden);
-    shadows.volume_bits.assign(layers.size(), std::vector<VolumeBits>(shadows.lights.size()));
+    shadows.kept_bits.assign(layers.size(), std::vector<KeptBits>(shadows.lights.size()));
     shadows.seen_from = std::move(from);
   }
+  if (prepared.on_shadows) prepared.on_shadows(false);
+  set_facets(shadows, scene, lights, frame);
+  place_lights(shadows, lights, seen_receivers(shadows), sees_others, pool);
+  if (prepared.on_shadows) prepared.on_shadows(true);
   draw_masks(shadows, scene, lights, camera, width, height, shadows.pass.profile, pool);
   const Tiles tiles = find_masks(shadows, width, height, pool);
   const std::vector<std::vector<int>> with_shares =

@@ -48,14 +48,15 @@ struct SeenFrom {
   bool operator==(const SeenFrom&) const = default;
 };
 
-/// A light's bits of a layer's mask, and VolumeCount's rays.
-struct VolumeBits {
+/// A light's bits of a layer's mask, and VolumeCount's rays. Maps have none.
+struct KeptBits {
   std::vector<std::uint8_t> mask{};
   std::size_t rays = 0;
 };
 
 /// Kept from frame to frame: projected triangles and volumes as long as nothing moves, the facets
-/// and the volumes' masks of a view that stays, and memory.
+/// and the masks of a view that stays, and memory. A light that has moved is projected
+/// onto what is seen alone: while it goes on moving, all else is of no use.
 struct SceneShadows {
   NumberedScene numbered;
   std::vector<std::size_t> lights;  ///< of the scene, those with shadows: bit i is lights[i]
@@ -74,7 +75,7 @@ struct SceneShadows {
   std::optional<SeenFrom> seen_from{};
   std::vector<std::vector<SeenFacet>> seen;  ///< of each layer
   /// Of each layer, of each of `lights`: empty if it has to be drawn.
-  std::vector<std::vector<VolumeBits>> volume_bits{};
+  std::vector<std::vector<KeptBits>> kept_bits{};
   std::vector<std::vector<std::uint8_t>> masks;  ///< of each layer: shadow_mask.h
   /// Of each of `lights`. Of other kinds than map, and before they are drawn, they have no sides.
   std::vector<ShadowMap> maps;
@@ -91,7 +92,7 @@ std::shared_ptr<SceneShadows> make_scene_shadows(const Scene& scene, const Profi
                                                  ThreadPool& pool);
 
 /// Makes shadows ready for lights, which are the scene's or the scene's in other places, at a
-/// frame: add_shadows() does it first.
+/// frame, on all that they fall on.
 void place_shadows(SceneShadows& shadows, const Scene& scene, std::span<const Light> lights,
                    double frame, ThreadPool& pool);
 

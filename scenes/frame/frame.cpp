@@ -166,8 +166,8 @@ void sample_lens(const Shot& shot, const LensViewInput& views, Frame& frame, Thr
   if (shot.method.samples_lens()) frame.sampled = std::move(sampled);
 }
 
-void choose_and_draw(const Shot& shot, const LensViewInput& views, Frame& frame, ThreadPool& pool,
-                     const FrameHooks& hooks) {
+void choose_and_draw(const Shot& shot, const DrawnFrame& drawn, const LensViewInput& views,
+                     Frame& frame, ThreadPool& pool, const FrameHooks& hooks) {
   const auto on_stage = [&](AutoStage stage) {
     tell(hooks, stage == AutoStage::choosing    ? FrameStage::choosing
                 : stage == AutoStage::filtering ? FrameStage::filtering
@@ -177,7 +177,7 @@ void choose_and_draw(const Shot& shot, const LensViewInput& views, Frame& frame,
   AutoPicture found = auto_picture({.views = views,
                                     .settings = frame.lens->settings,
                                     .goal = shot.goal,
-                                    .limits = {shot.most_coc_px, triangle_count(*shot.scene)},
+                                    .limits = {shot.most_coc_px, drawn.triangles},
                                     .verify = shot.verify,
                                     .on_stage = on_stage},
                                    pool);
@@ -255,6 +255,7 @@ void draw_shot(const Shot& shot, FrameMemory& memory, DrawnFrame& drawn, ThreadP
   drawn.layers = layers_of(shot);
   if (hooks.draw) {
     drawn.parts = hooks.draw(drawn.view, width, height, drawn.layers);
+    drawn.triangles = triangle_count(*shot.scene);
     return;
   }
   if (!memory.prepared) {
@@ -266,6 +267,7 @@ void draw_shot(const Shot& shot, FrameMemory& memory, DrawnFrame& drawn, ThreadP
   }
   drawn.stand_ins = memory.prepared->stand_ins;
   memory.prepared->on_light_points = hooks.on_light_points;
+  memory.prepared->on_shadows = hooks.on_shadows;
   const bool is_after_others = !shot.effects.empty() && is_of_frames(*shot.effects.front().effect);
   if (!is_after_others || drawn.layers > 1) {
     // Maps show one surface a pixel; methods that draw the scene have --jitter.
@@ -278,6 +280,8 @@ void draw_shot(const Shot& shot, FrameMemory& memory, DrawnFrame& drawn, ThreadP
     draw_after_others(shot, shot.effects.front(), *memory.prepared, width, height, drawn, pool);
   }
   memory.prepared->on_light_points = {};
+  memory.prepared->on_shadows = {};
+  drawn.triangles = memory.prepared->triangles;
   if (is_filtered(shot) && drawn.layers > 0) {
     drawn.objects = object_numbers_for(*shot.method.filter, *shot.scene, drawn.view, shot.frame,
                                        width, height, shot.profile, pool);
@@ -381,7 +385,7 @@ Frame make_picture(const Shot& shot, const DrawnFrame& drawn, const std::optiona
     tell(hooks, FrameStage::sampling);
     sample_lens(shot, views_of(shot, drawn, used, memory, hooks), frame, pool);
   } else {
-    choose_and_draw(shot, views_of(shot, drawn, used, memory, hooks), frame, pool, hooks);
+    choose_and_draw(shot, drawn, views_of(shot, drawn, used, memory, hooks), frame, pool, hooks);
   }
   return frame;
 }

@@ -108,6 +108,7 @@ struct DrawnFrame {
   /// alone; a method that reads more has it drawn.
   std::size_t layers = 0;
   std::shared_ptr<const StandIns> stand_ins{};  ///< by which it was drawn, if any
+  std::size_t triangles = 0;                    ///< that were drawn as such
   std::vector<std::uint16_t> objects{};         ///< DofInput::objects, if the method reads them
   std::optional<double> shaded_share{};  ///< of the pixels, where frames take from those before
 };
@@ -160,6 +161,7 @@ struct FrameHooks {
   std::function<void(FrameStage)> on_stage;  ///< told as each begins
   std::function<void(int samples)> on_samples;
   std::function<void(int points)> on_light_points;  ///< of soft shadows
+  std::function<void(bool are_placed)> on_shadows;  ///< as PreparedScene has it
   /// Told of what was drawn, before the method.
   std::function<void(const DrawnFrame&, const std::optional<UsedLens>&)> on_drawn;
   /// A driver that draws and filters in place of the emulation.

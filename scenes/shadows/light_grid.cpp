@@ -132,27 +132,69 @@ void set_side(LightGrid& grid, std::span<const Facet> facets,
                std::max(box.high.y - box.low.y, least_size)};
 }
 
+// Without a pool, one after the other.
+template <class Work>
+void for_each(ThreadPool* pool, std::size_t count, const Work& work) {
+  if (pool != nullptr) {
+    pool->for_each(static_cast<int>(count), [&](int i) { work(static_cast<std::size_t>(i)); });
+    return;
+  }
+  for (std::size_t i = 0; i < count; ++i) work(i);
+}
+
 // Cells of a row that name a caster.
 struct CasterRow {
   std::uint32_t caster;
   int first, count;
 };
 
-// All of them; none if they are more than `most` cells.
-std::optional<std::vector<CasterRow>> caster_rows(const LightGrid& grid,
-                                                  std::span<const Facet> facets,
-                                                  std::span<const std::uint32_t> casters,
-                                                  std::size_t most) {
+// The rows of a part of the casters.
+struct RowsOfPart {
   std::vector<CasterRow> rows;
   std::size_t entries = 0;
-  for (const std::uint32_t caster : casters) {
-    for_each_row(grid, facets[caster].corners, [&](int first, int count) {
-      rows.push_back({caster, first, count});
-      entries += static_cast<std::size_t>(count);
-    });
-    if (entries > most) return {};
+};
+
+constexpr std::size_t kCastersOfRows = 4096;
+
+// All of them, part after part; none if they are more than `most` cells.
+std::optional<std::vector<RowsOfPart>> caster_rows(const LightGrid& grid,
+                                                   std::span<const Facet> facets,
+                                                   std::span<const std::uint32_t> casters,
+                                                   std::size_t most, ThreadPool* pool) {
+  std::vector<RowsOfPart> parts((casters.size() + kCastersOfRows - 1) / kCastersOfRows);
+  for_each(pool, parts.size(), [&](std::size_t number) {
+    RowsOfPart& part = parts[number];
+    const std::size_t begin = number * kCastersOfRows;
+    for (const std::uint32_t caster :
+         casters.subspan(begin, std::min(kCastersOfRows, casters.size() - begin))) {
+      for_each_row(grid, facets[caster].corners, [&](int first, int count) {
+        part.rows.push_back({caster, first, count});
+        part.entries += static_cast<std::size_t>(count);
+      });
+      if (part.entries > most) return;
+    }
+  });
+  std::size_t entries = 0;
+  for (const RowsOfPart& part : parts) entries += part.entries;
+  if (entries > most) return {};
+  return parts;
+}
+
+// The facets that stop light, in their order.
+std::vector<std::uint32_t> casters_of(const Facets& facets, const ShadowLight& light,
+                                      ThreadPool* pool) {
+  std::vector<std::uint8_t> stops(facets.facets.size());
+  for_each(pool, (stops.size() + kCastersOfRows - 1) / kCastersOfRows, [&](std::size_t number) {
+    const std::size_t begin = number * kCastersOfRows;
+    for (std::size_t i = begin; i < std::min(begin + kCastersOfRows, stops.size()); ++i) {
+      stops[i] = stops_light(facets.facets[i], facets.planes[i], light) ? 1 : 0;
+    }
+  });
+  std::vector<std::uint32_t> casters;
+  for (std::uint32_t i = 0; i < stops.size(); ++i) {
+    if (stops[i] != 0) casters.push_back(i);
   }
-  return rows;
+  return casters;
 }
 
 }  // namespace
@@ -163,38 +205,40 @@ bool stops_light(const Facet& facet, const FacetPlane& plane, const ShadowLight&
   return facet.two_sided ? before != 0.0 : before > 0.0;
 }
 
-LightGrid make_light_grid(const Facets& facets, const ShadowLight& light) {
+LightGrid make_light_grid(const Facets& facets, const ShadowLight& light, ThreadPool* pool) {
   LightGrid grid;
   grid.light = light;
   grid.sides = light.w == 0.0 ? 1 : 6;
-  std::vector<std::uint32_t> casters;
-  for (std::uint32_t i = 0; i < facets.facets.size(); ++i) {
-    if (stops_light(facets.facets[i], facets.planes[i], light)) casters.push_back(i);
-  }
+  grid.facets = facets.facets.size();
+  const std::vector<std::uint32_t> casters = casters_of(facets, light, pool);
   const double per_side = static_cast<double>(casters.size()) / (grid.sides == 1 ? 0.5 : 1.5);
   grid.cells = std::clamp(static_cast<int>(std::sqrt(per_side)), 1, kMostCells);
   if (grid.sides == 1) set_side(grid, facets.facets, casters);
   const std::size_t most = kMostEntries * (casters.size() + 1);
   constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
-  auto rows = caster_rows(grid, facets.facets, casters, grid.cells > 1 ? most : kAny);
+  auto rows = caster_rows(grid, facets.facets, casters, grid.cells > 1 ? most : kAny, pool);
   while (!rows) {
     grid.cells /= 2;
-    rows = caster_rows(grid, facets.facets, casters, grid.cells > 1 ? most : kAny);
+    rows = caster_rows(grid, facets.facets, casters, grid.cells > 1 ? most : kAny, pool);
   }
 
   const auto cell_count = static_cast<std::size_t>(grid.sides) *
                           static_cast<std::size_t>(grid.cells) *
                           static_cast<std::size_t>(grid.cells);
   grid.begins.assign(cell_count + 1, 0);
-  for (const auto& [caster, first, count] : *rows) {
-    for (int i = 0; i < count; ++i) ++grid.begins[static_cast<std::size_t>(first + i) + 1];
+  for (const RowsOfPart& part : *rows) {
+    for (const auto& [caster, first, count] : part.rows) {
+      for (int i = 0; i < count; ++i) ++grid.begins[static_cast<std::size_t>(first + i) + 1];
+    }
   }
   for (std::size_t i = 0; i < cell_count; ++i) grid.begins[i + 1] += grid.begins[i];
   grid.casters.resize(grid.begins.back());
   std::vector<std::uint32_t> next(grid.begins.begin(), grid.begins.end() - 1);
-  for (const auto& [caster, first, count] : *rows) {
-    for (int i = 0; i < count; ++i) {
-      grid.casters[next[static_cast<std::size_t>(first + i)]++] = caster;
+  for (const RowsOfPart& part : *rows) {
+    for (const auto& [caster, first, count] : part.rows) {
+      for (int i = 0; i < count; ++i) {
+        grid.casters[next[static_cast<std::size_t>(first + i)]++] = caster;
+      }
     }
   }
   return grid;
@@ -210,6 +254,36 @@ void find_casters(const LightGrid& grid, std::span<const glm::dvec3> polygon,
   });
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());
+}
+
+std::span<const std::uint32_t> find_casters(const LightGrid& grid,
+                                            std::span<const glm::dvec3> polygon,
+                                            CasterSearch& search) {
+  std::vector<std::uint32_t>& found = search.found;
+  found.clear();
+  if (search.found_in.size() != grid.facets || ++search.search == 0) {
+    search.found_in.assign(grid.facets, 0);
+    search.search = 1;
+  }
+  for_each_row(grid, polygon, [&](int first, int count) {
+    const std::uint32_t end = grid.begins[static_cast<std::size_t>(first + count)];
+    for (std::uint32_t i = grid.begins[static_cast<std::size_t>(first)]; i < end; ++i) {
+      const std::uint32_t caster = grid.casters[i];
+      if (search.found_in[caster] == search.search) continue;
+      search.found_in[caster] = search.search;
+      found.push_back(caster);
+    }
+  });
+  // To look at all is quicker than to sort many.
+  if (found.size() > grid.facets / 16) {
+    found.clear();
+    for (std::uint32_t i = 0; i < grid.facets; ++i) {
+      if (search.found_in[i] == search.search) found.push_back(i);
+    }
+  } else {
+    std::sort(found.begin(), found.end());
+  }
+  return found;
 }
 
 }  // namespace softfocus

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "raster/threads/parallel.h"
 #include "scenes/shadows/facets.h"
 
 namespace softfocus {
@@ -25,16 +26,31 @@ struct LightGrid {
   /// increasing order.
   std::vector<std::uint32_t> begins;
   std::vector<std::uint32_t> casters;
+  std::size_t facets = 0;  ///< of the scene
 };
 
 /// Whether a facet stops light from there: it casts, and the light is on a side that it has.
 bool stops_light(const Facet& facet, const FacetPlane& plane, const ShadowLight& light);
 
-LightGrid make_light_grid(const Facets& facets, const ShadowLight& light);
+/// The same for any number of threads; without a pool, by one.
+LightGrid make_light_grid(const Facets& facets, const ShadowLight& light,
+                          ThreadPool* pool = nullptr);
 
 /// Fills `found` with the casters of all cells that a convex polygon may touch, in increasing
 /// order, each once.
 void find_casters(const LightGrid& grid, std::span<const glm::dvec3> polygon,
                   std::vector<std::uint32_t>& found);
+
+/// Memory that is kept from one search to the next.
+struct CasterSearch {
+  std::vector<std::uint32_t> found;
+  std::vector<std::uint32_t> found_in;  ///< of each facet, the last search that found it
+  std::uint32_t search = 0;
+};
+
+/// The same, for polygons that touch many cells. Valid until the next search.
+std::span<const std::uint32_t> find_casters(const LightGrid& grid,
+                                            std::span<const glm::dvec3> polygon,
+                                            CasterSearch& search);
 
 }  // namespace softfocus

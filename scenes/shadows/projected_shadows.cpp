@@ -9,17 +9,41 @@
 namespace softfocus {
 namespace {
 
+// A plane through the light and an edge of a polygon, with the rest of the polygon on its positive
+// side.
+struct EdgePlane {
+  glm::dvec3 across;
+  glm::dvec3 on_it;
+};
+
+// That of the edge from corner i on, `across` of any length; 0 of an edge that points at the light.
+EdgePlane edge_plane(std::span<const glm::dvec3> polygon, std::size_t i, const ShadowLight& light) {
+  const glm::dvec3& a = polygon[i];
+  const glm::dvec3& b = polygon[i + 1 < polygon.size() ? i + 1 : 0];
+  const glm::dvec3& inside = polygon[i > 0 ? i - 1 : polygon.size() - 1];
+  const glm::dvec3 across = cross(b - a, light.place - a * light.w);
+  return {dot(across, inside - a) < 0.0 ? -across : across, a};
+}
+
 // A receiver with its normal on the light's side.
 struct LitReceiver {
   FacetPlane plane;
   double light_height;  // a cosine if the light is directional
   std::span<const glm::dvec3> outline;
+  std::array<EdgePlane, 4> edges;  // of the outline
+  std::size_t edge_count = 0;
 };
 
 LitReceiver lit_receiver(const Receiver& receiver, const ShadowLight& light, LitSide side) {
   FacetPlane plane = receiver.plane;
   if (side == LitSide::back) plane = {-plane.normal, -plane.offset};
-  return {plane, height_over(plane, light), receiver.corners_of_outline()};
+  LitReceiver lit{plane, height_over(plane, light), receiver.corners_of_outline(), {}};
+  for (std::size_t i = 0; i < lit.outline.size(); ++i) {
+    EdgePlane edge = edge_plane(lit.outline, i, light);
+    edge.across = normalize(edge.across);
+    if (edge.across != glm::dvec3{0.0}) lit.edges[lit.edge_count++] = edge;
+  }
+  return lit;
 }
 
 bool is_lit(LitSide side) { return side == LitSide::front || side == LitSide::back; }
@@ -51,23 +75,18 @@ CasterPolygon cut_polygon(const CasterPolygon& polygon, const Distance& distance
   return kept;
 }
 
-// Whether all of `points` are outside a plane through the light and an edge of `polygon`, seen from
-// which the rest of the polygon is inside. Lengths in metres, but for rounding.
-bool is_beside(std::span<const glm::dvec3> polygon, std::span<const glm::dvec3> points,
-               const ShadowLight& light, double margin_m) {
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const glm::dvec3& a = polygon[i];
-    const glm::dvec3& b = polygon[(i + 1) % polygon.size()];
-    const glm::dvec3& inside = polygon[(i + 2) % polygon.size()];
-    glm::dvec3 across = normalize(cross(b - a, light.place - a * light.w));
-    if (dot(across, inside - a) < 0.0) across = -across;
-    if (across == glm::dvec3{0.0}) continue;
-    const bool all = std::all_of(points.begin(), points.end(), [&](const glm::dvec3& p) {
-      return dot(across, p - a) < -margin_m;
-    });
-    if (all) return true;
-  }
-  return false;
+// Whether all of `points` are outside. Of an `across` of length 1.
+bool is_beside(const EdgePlane& edge, std::span<const glm::dvec3> points, double margin_m) {
+  return std::all_of(points.begin(), points.end(), [&](const glm::dvec3& p) {
+    return dot(edge.across, p - edge.on_it) < -margin_m;
+  });
+}
+
+// Of one of any length: mostly some point is inside, whatever the length.
+bool is_beside_unscaled(EdgePlane edge, std::span<const glm::dvec3> points, double margin_m) {
+  if (!is_beside(edge, points, 0.0)) return false;
+  edge.across = normalize(edge.across);
+  return is_beside(edge, points, margin_m);
 }
 
 bool all_before(std::span<const glm::dvec3> points, glm::dvec3 from, glm::dvec3 ahead) {
@@ -122,9 +141,13 @@ bool misses(const Facets& facets, std::uint32_t caster, const LitReceiver& recei
   if (stands_behind(facets.planes[caster], receiver, light, facets.epsilon_m)) return true;
   const std::array<glm::dvec3, 3>& corners = facets.facets[caster].corners;
   const double margin = facets.epsilon_m * 0x1p-20;
-  return is_beside(receiver.outline, corners, light, margin) ||
-         is_beside(corners, receiver.outline, light, margin) ||
-         is_elsewhere(receiver.outline, corners, light, margin);
+  for (std::size_t i = 0; i < receiver.edge_count; ++i) {
+    if (is_beside(receiver.edges[i], corners, margin)) return true;
+  }
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (is_beside_unscaled(edge_plane(corners, i, light), receiver.outline, margin)) return true;
+  }
+  return is_elsewhere(receiver.outline, corners, light, margin);
 }
 
 // A caster's fate, as far as it is known beforehand.
@@ -209,40 +232,96 @@ std::uint32_t receivers_a_task(std::uint32_t receivers) {
   return std::clamp(receivers / 256, std::uint32_t{1}, std::uint32_t{64});
 }
 
+// Casters before a receiver, as one task takes them: all, or of a receiver of many, which may be a
+// floor, a part.
+constexpr std::size_t kCastersOfTask = 2048;
+
+struct CasterPart {
+  std::uint32_t receiver;
+  std::vector<std::uint32_t> casters;
+  std::vector<ProjectedTriangle> triangles{};
+  std::size_t first = 0;  // of the receiver's
+};
+
 // The casters that a task's first pass found to throw a shadow; those of its receiver i end at
 // ends[i].
 struct FoundCasters {
   std::vector<std::uint32_t> casters;
   std::vector<std::size_t> ends;
+  std::vector<CasterPart> parts;  // of its receivers of many
 };
 
-// find(receiver, memory) gives a receiver's casters.
-template <class Find>
+void add_parts(std::uint32_t receiver, std::span<const std::uint32_t> casters,
+               std::vector<CasterPart>& parts) {
+  for (std::size_t i = 0; i < casters.size(); i += kCastersOfTask) {
+    const auto part = casters.subspan(i, std::min(kCastersOfTask, casters.size() - i));
+    parts.push_back({receiver, {part.begin(), part.end()}});
+  }
+}
+
+void project_part(const Facets& facets, const ShadowLight& light, LitSide side, CasterPart& part) {
+  part.triangles.reserve(part.casters.size());
+  for_each_shadow(facets, part.receiver, light, side, part.casters, Throws::perhaps,
+                  [&](std::uint32_t, const CasterPolygon& polygon) {
+                    triangulate(polygon, [&](const ProjectedTriangle& triangle) {
+                      part.triangles.push_back(triangle);
+                    });
+                  });
+}
+
+// find(receiver, memory) gives a receiver's casters. Receivers of more than `many` are taken in
+// parts. If any receivers are `wanted`, others get no triangles.
+template <class Memory, class Find>
 ProjectedShadows count_and_fill(const Facets& facets, const ShadowLight& light, ThreadPool& pool,
+                                std::span<const std::uint8_t> wanted, std::size_t many,
                                 const Find& find) {
   ProjectedShadows made;
   made.lit = lit_sides(facets, light);
+  made.of_all = wanted.empty();
   const auto receivers = static_cast<std::uint32_t>(facets.receivers.size());
   const std::uint32_t a_task = receivers_a_task(receivers);
   const auto tasks = static_cast<int>((receivers + a_task - 1) / a_task);
   std::vector<FoundCasters> found(static_cast<std::size_t>(tasks));
   made.begins.assign(receivers + std::size_t{1}, 0);
-  for_each_with<std::vector<std::uint32_t>>(pool, tasks, [&](int task, auto& memory) {
+  for_each_with<Memory>(pool, tasks, [&](int task, Memory& memory) {
     FoundCasters& of_task = found[static_cast<std::size_t>(task)];
     const std::uint32_t begin = static_cast<std::uint32_t>(task) * a_task;
     for (std::uint32_t r = begin; r < std::min(begin + a_task, receivers); ++r) {
-      if (is_lit(made.lit[r])) {
-        for_each_shadow(facets, r, light, made.lit[r], find(r, memory), Throws::perhaps,
-                        [&](std::uint32_t caster, const CasterPolygon& polygon) {
-                          made.begins[r + 1] += polygon.count - 2;
-                          of_task.casters.push_back(caster);
-                        });
+      if (is_lit(made.lit[r]) && (wanted.empty() || wanted[r] != 0)) {
+        const std::span<const std::uint32_t> casters = find(r, memory);
+        if (casters.size() > many) {
+          add_parts(r, casters, of_task.parts);
+        } else {
+          for_each_shadow(facets, r, light, made.lit[r], casters, Throws::perhaps,
+                          [&](std::uint32_t caster, const CasterPolygon& polygon) {
+                            made.begins[r + 1] += polygon.count - 2;
+                            of_task.casters.push_back(caster);
+                          });
+        }
       }
       of_task.ends.push_back(of_task.casters.size());
     }
   });
+  std::vector<CasterPart*> parts;
+  for (FoundCasters& of_task : found) {
+    for (CasterPart& part : of_task.parts) parts.push_back(&part);
+  }
+  pool.for_each(static_cast<int>(parts.size()), [&](int i) {
+    CasterPart& part = *parts[static_cast<std::size_t>(i)];
+    project_part(facets, light, made.lit[part.receiver], part);
+  });
+  for (CasterPart* part : parts) {
+    part->first = made.begins[part->receiver + std::size_t{1}];
+    made.begins[part->receiver + std::size_t{1}] += part->triangles.size();
+  }
   std::partial_sum(made.begins.begin(), made.begins.end(), made.begins.begin());
   made.triangles.resize(made.begins.back());
+  pool.for_each(static_cast<int>(parts.size()), [&](int i) {
+    const CasterPart& part = *parts[static_cast<std::size_t>(i)];
+    std::copy(part.triangles.begin(), part.triangles.end(),
+              made.triangles.begin() +
+                  static_cast<std::ptrdiff_t>(made.begins[part.receiver] + part.first));
+  });
   pool.for_each(tasks, [&](int task) {
     const FoundCasters& of_task = found[static_cast<std::size_t>(task)];
     const std::uint32_t begin = static_cast<std::uint32_t>(task) * a_task;
@@ -305,18 +384,19 @@ ProjectedShadows project_in_sequence(const Facets& facets, const ShadowLight& li
 ProjectedShadows project_in_parallel(const Facets& facets, const ShadowLight& light,
                                      ThreadPool& pool) {
   const std::vector<std::uint32_t> casters = all_casters(facets, light);
-  return count_and_fill(facets, light, pool, [&](std::uint32_t, std::vector<std::uint32_t>&) {
-    return std::span<const std::uint32_t>{casters};
-  });
+  struct Nothing {};
+  return count_and_fill<Nothing>(
+      facets, light, pool, {}, casters.size(),
+      [&](std::uint32_t, Nothing&) { return std::span<const std::uint32_t>{casters}; });
 }
 
-ProjectedShadows project_by_grid(const Facets& facets, const ShadowLight& light, ThreadPool& pool) {
-  const LightGrid grid = make_light_grid(facets, light);
-  return count_and_fill(facets, light, pool,
-                        [&](std::uint32_t r, std::vector<std::uint32_t>& memory) {
-                          find_casters(grid, facets.receivers[r].corners_of_outline(), memory);
-                          return std::span<const std::uint32_t>{memory};
-                        });
+ProjectedShadows project_by_grid(const Facets& facets, const ShadowLight& light, ThreadPool& pool,
+                                 std::span<const std::uint8_t> wanted) {
+  const LightGrid grid = make_light_grid(facets, light, &pool);
+  return count_and_fill<CasterSearch>(
+      facets, light, pool, wanted, 2 * kCastersOfTask, [&](std::uint32_t r, CasterSearch& search) {
+        return find_casters(grid, facets.receivers[r].corners_of_outline(), search);
+      });
 }
 
 }  // namespace softfocus

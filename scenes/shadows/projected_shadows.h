@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec4.hpp>
+#include <span>
 #include <vector>
 
 #include "raster/threads/parallel.h"
@@ -26,12 +27,13 @@ std::vector<LitSide> lit_sides(const Facets& facets, const ShadowLight& light);
 /// plane; corners of w = 0 are infinitely far.
 using ProjectedTriangle = std::array<glm::dvec4, 3>;
 
-/// All shadows of one light. They depend on no camera.
+/// The shadows of one light, which depend on no camera.
 struct ProjectedShadows {
   std::vector<LitSide> lit;  ///< lit_sides()
   /// CSR: receiver i's triangles are triangles[begins[i]] to triangles[begins[i + 1] - 1].
   std::vector<std::size_t> begins;
   std::vector<ProjectedTriangle> triangles;
+  bool of_all = true;  ///< receivers; if not, of those asked for
 };
 
 /// Every caster against every receiver, one after the other: O(n^2).
@@ -43,7 +45,9 @@ ProjectedShadows project_in_parallel(const Facets& facets, const ShadowLight& li
                                      ThreadPool& pool);
 
 /// The same bits. As project_in_parallel(), but each receiver looks at the casters that a
-/// LightGrid finds before it.
-ProjectedShadows project_by_grid(const Facets& facets, const ShadowLight& light, ThreadPool& pool);
+/// LightGrid finds before it. With `wanted`, an entry for each receiver, others than those that are
+/// not 0 get no triangles.
+ProjectedShadows project_by_grid(const Facets& facets, const ShadowLight& light, ThreadPool& pool,
+                                 std::span<const std::uint8_t> wanted = {});
 
 }  // namespace softfocus

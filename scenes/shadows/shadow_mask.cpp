@@ -22,6 +22,7 @@ std::vector<DarkSides> dark_sides(const Facets& facets,
                                   std::span<const ProjectedShadows* const> shadows) {
   std::vector<DarkSides> dark(facets.receivers.size());
   for (std::size_t light = 0; light < shadows.size(); ++light) {
+    if (shadows[light] == nullptr) continue;
     const auto bit = static_cast<std::uint8_t>(1u << light);
     for (std::size_t r = 0; r < dark.size(); ++r) {
       const LitSide lit = shadows[light]->lit[r];
@@ -188,6 +189,7 @@ std::vector<Piece> pieces_of(const SeenReceivers& found,
   for (std::uint32_t r = 0; r < found.boxes.size(); ++r) {
     if (found.boxes[r].y_end == 0) continue;
     for (std::size_t light = 0; light < shadows.size(); ++light) {
+      if (shadows[light] == nullptr) continue;
       const std::vector<std::size_t>& begins = shadows[light]->begins;
       const std::size_t end = begins[r + std::size_t{1}];
       for (std::size_t t = begins[r]; t < end; t += kTrianglesOfTask) {

@@ -58,7 +58,7 @@ struct MaskDraws {
 };
 
 /// `seen` has rows from the top, without gaps. Bit i is that of the light of `shadows`[i], 8 at
-/// most; one whose shadows have no triangles has its dark sides alone.
+/// most; one whose shadows have no triangles has its dark sides alone, and null has no bits.
 MaskDraws cut_shadows(const Facets& facets, std::span<const ProjectedShadows* const> shadows,
                       std::span<const SeenFacet> seen, const ShadowView& view, ThreadPool& pool);
 

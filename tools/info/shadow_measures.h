@@ -44,6 +44,16 @@ struct RepeatedShadows {
     draw_scene(prepared, camera, frame, picture, pool);
   }
 
+  /// As if the lights alone had moved, by less than a degree.
+  void draw_moved() {
+    for (Light& light : scene.lights) {
+      glm::vec3& place = light.position_or_direction;
+      const float cosine = 0.9999f, sine = 0.01414f;
+      place = {cosine * place.x + sine * place.z, place.y, cosine * place.z - sine * place.x};
+    }
+    draw_scene(prepared, camera, frame, picture, pool);
+  }
+
   SceneShadows& shadows() { return *prepared.shadows; }
   const SceneShadows& shadows() const { return *prepared.shadows; }
   ShadowView view() const {

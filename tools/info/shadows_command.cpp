@@ -234,11 +234,17 @@ void measure_shadows(const ShadowsOptions& options, Findings& found) {
                               ? Profile{}
                               : find_profile(options.versus->profile).value_or(Profile{});
   RepeatedShadows shadowed{scene, measure, pool, profile};
+  RepeatedShadows kept{scene, measure, pool, profile}, moving{scene, measure, pool, profile};
   RepeatedShadows plain{unshadowed, measure, pool, profile};
   SceneShadows& shadows = shadowed.shadows();
   shadows.volume_count = options.volume_count;
   shadowed.draw();
   plain.draw();
+  moving.draw();
+  // A camera that moves while no light does has the shadows on all from its second frame on.
+  kept.draw();
+  kept.draw();
+  place_shadows(shadows, scene, scene.lights, measure.frame, pool);
   std::size_t projected = 0;
   std::vector<ShadowLight> lights;
   for (std::size_t i = 0; i < shadows.lights.size(); ++i) {
@@ -267,11 +273,13 @@ void measure_shadows(const ShadowsOptions& options, Findings& found) {
   }
   std::vector<Milliseconds> times{{"facets and receivers"},
                                   {"frame, nothing kept"},
+                                  {"frame, lights moved"},
                                   {"frame, shadows kept"},
                                   {"frame without shadows"}};
   time_in_turn(
       times, options.runs, [&] { scene_facets(scene, options.frame); },
-      [&] { shadowed.draw_anew(); }, [&] { shadowed.draw(); }, [&] { plain.draw(); });
+      [&] { shadowed.draw_anew(); }, [&] { moving.draw_moved(); }, [&] { kept.draw(); },
+      [&] { plain.draw(); });
   found.add_times(times);
   const glm::dvec3 eye = shadowed.camera.eye;
   if (options.versus != nullptr) {

@@ -129,12 +129,18 @@ SceneShadows* shadows_of(Page& page) {
   return page.memory.prepared ? page.memory.prepared->shadows.get() : nullptr;
 }
 
-void make_shadows_ready(Page& page, const Shot& shot, Drawn& drawn) {
-  SceneShadows* const shadows = shadows_of(page);
-  if (shadows == nullptr) return;
-  const auto start = std::chrono::steady_clock::now();
-  place_shadows(*shadows, *shot.scene, shot.scene->lights, shot.frame, *page.pool);
-  drawn.shadows_ms = milliseconds_since(start);
+/// Draws, and times what makes shadows ready.
+void draw_scene_of(Page& page, const Shot& shot, Drawn& drawn) {
+  std::chrono::steady_clock::time_point start;
+  FrameHooks hooks;
+  hooks.on_shadows = [&](bool are_placed) {
+    if (are_placed) {
+      drawn.shadows_ms += milliseconds_since(start);
+    } else {
+      start = std::chrono::steady_clock::now();
+    }
+  };
+  draw_shot(shot, page.memory, drawn.frame, *page.pool, hooks);
 }
 
 ShadowCounts counts_of(const SceneShadows& shadows) {
@@ -208,8 +214,7 @@ std::shared_ptr<const Drawn> drawn_picture(Page& page, const FrameSettings& sett
     drawn->camera = shot.scene->camera;
     Shot for_any_lens = shot;
     for_any_lens.lens.reset();
-    make_shadows_ready(page, for_any_lens, *drawn);
-    draw_shot(for_any_lens, page.memory, drawn->frame, *page.pool);
+    draw_scene_of(page, for_any_lens, *drawn);
   }
   drawn->ms = milliseconds_since(start);
   if (const SceneShadows* shadows = shadows_of(page)) drawn->shadows = counts_of(*shadows);

@@ -93,6 +93,8 @@ TEST_CASE("impostors among geometry look like geometry, and lie at its depths") 
   const Image drawn = with.drawn(10.0), redrawn = with.redrawn(10.0);
   CHECK(with.impostors->counts.shown == 3);
   CHECK(with.impostors->counts.renewed == 3);
+  // What auto reckons with: the floor and the post.
+  CHECK(with.prepared->triangles == 4 * 4 * 2 + 6 * 2 * 2 * 2);
   CHECK(with.flip_at(10.0) < 0.02);
   int far_off = 0, differ = 0;
   for (int y = 0; y < kSize; ++y) {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <vector>
 
 #include "tests/support/shadow_facets.h"
@@ -32,10 +33,15 @@ glm::dvec3 behind(glm::dvec3 target, const ShadowLight& light) {
   return target + (target * light.w - light.place) * 0.7;
 }
 
+bool same(std::span<const std::uint32_t> a, std::span<const std::uint32_t> b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end());
+}
+
 // Returns how many casters rays met. Each must be named where its ray begins.
 int check_grid(const Facets& facets, const ShadowLight& light) {
   const LightGrid grid = make_light_grid(facets, light);
   std::vector<std::uint32_t> found;
+  CasterSearch search;
   int met = 0;
   for (std::size_t f = 0; f < facets.facets.size(); ++f) {
     const auto& [a, b, c] = facets.facets[f].corners;
@@ -43,6 +49,7 @@ int check_grid(const Facets& facets, const ShadowLight& light) {
          {a, b, c, (a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5, (a + b + c) / 3.0}) {
       const glm::dvec3 from = behind(target, light);
       find_casters(grid, {&from, 1}, found);
+      REQUIRE(same(find_casters(grid, {&from, 1}, search), found));
       for (std::uint32_t i = 0; i < facets.facets.size(); ++i) {
         if (!stops_light(facets.facets[i], facets.planes[i], light)) continue;
         if (!meets(facets.facets[i], from, light)) continue;
@@ -66,6 +73,27 @@ TEST_CASE("a light's grid names every caster that a ray to the light meets, at i
           ShadowLight{facets.facets[9].corners[0], 1.0}}) {
       CHECK(check_grid(facets, light) > 500);
     }
+  }
+}
+
+TEST_CASE("a search of few casters and one of most name what sorting all cells names") {
+  const Facets facets = facet_soup(5, 800, 0.1);
+  for (const ShadowLight& light :
+       {ShadowLight{normalize(glm::dvec3{0.3, 1, 0.2}), 0.0}, ShadowLight{{0.2, 0.1, -0.3}, 1.0}}) {
+    const LightGrid grid = make_light_grid(facets, light);
+    CasterSearch search;
+    search.search = ~std::uint32_t{0} - 3;  // it comes round
+    search.found_in.resize(grid.facets);
+    std::size_t most = 0;
+    for (const double reach : {0.01, 0.1, 0.3, 1.0, 3.0, 0.05}) {
+      const std::array<glm::dvec3, 3> polygon{
+          {{-reach, -0.5, reach}, {reach, -0.4, reach}, {reach, -0.6, -reach}}};
+      std::vector<std::uint32_t> found;
+      find_casters(grid, polygon, found);
+      CHECK(same(find_casters(grid, polygon, search), found));
+      most = std::max(most, found.size());
+    }
+    CHECK(most > facets.facets.size() / 8);
   }
 }
 

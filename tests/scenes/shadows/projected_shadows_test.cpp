@@ -168,6 +168,59 @@ TEST_CASE("all schedules give the same bits") {
   }
 }
 
+TEST_CASE("a floor under thousands of casters, which threads share, has the bits of one thread") {
+  constexpr int kCasters = 9000;
+  const Facets soup = facet_soup(3, kCasters, 0.02);
+  std::vector<Facet> corners = soup.facets;
+  add_quad(corners, {-9, -2, 9}, {9, -2, 9}, {9, -2, -9}, {-9, -2, -9});
+  const Facets facets = make_facets(std::move(corners));
+  const std::size_t floor = facets.receiver_of[kCasters];
+  const ShadowLight light = kLights[0];
+  ThreadPool pool{3}, one{1};
+  // The other receivers are thousands, too many for every caster against each.
+  std::vector<std::uint8_t> wanted(facets.receivers.size());
+  wanted[floor] = 1;
+  const ProjectedShadows by_grid = project_by_grid(facets, light, pool, wanted);
+  std::size_t casters = 0;
+  for (std::size_t i = 0; i < kCasters; ++i) {
+    casters += stops_light(facets.facets[i], facets.planes[i], light) ? 1 : 0;
+  }
+  CHECK(casters > 4096);
+  CHECK(by_grid.triangles.size() == casters);  // none is cut, all lie above it
+  CHECK(same(by_grid, project_by_grid(facets, light, one, wanted)));
+  // In the casters' order: each triangle's middle lies under its caster, as the light falls.
+  std::size_t at = by_grid.begins[floor];
+  for (std::size_t i = 0; i < kCasters; ++i) {
+    if (!stops_light(facets.facets[i], facets.planes[i], light)) continue;
+    const ProjectedTriangle& shadow = by_grid.triangles[at++];
+    const glm::dvec3 corner = facets.facets[i].corners[0],
+                     fallen = glm::dvec3{shadow[0]} / shadow[0].w;
+    const glm::dvec3 way = cross(corner - fallen, light.place);
+    REQUIRE(dot(way, way) < 1e-18);
+  }
+}
+
+TEST_CASE("receivers that nobody wants get no triangles, the others what they had") {
+  const Facets facets = facet_soup(2, 300, 0.3);
+  ThreadPool pool{2};
+  for (const ShadowLight& light : kLights) {
+    const ProjectedShadows all = project_by_grid(facets, light, pool);
+    std::vector<std::uint8_t> wanted(facets.receivers.size());
+    for (std::size_t r = 0; r < wanted.size(); ++r) wanted[r] = r % 3 == 1 ? 1 : 0;
+    const ProjectedShadows some = project_by_grid(facets, light, pool, wanted);
+    CHECK(all.of_all);
+    CHECK(!some.of_all);
+    CHECK(some.lit == all.lit);
+    for (std::size_t r = 0; r < wanted.size(); ++r) {
+      const std::size_t count = some.begins[r + 1] - some.begins[r];
+      REQUIRE(count == (wanted[r] != 0 ? all.begins[r + 1] - all.begins[r] : 0));
+      for (std::size_t i = 0; i < count; ++i) {
+        REQUIRE(some.triangles[some.begins[r] + i] == all.triangles[all.begins[r] + i]);
+      }
+    }
+  }
+}
+
 TEST_CASE("lights in awkward places give finite triangles") {
   const Facets facets = facet_soup(9, 200, 0.3);
   ThreadPool pool{1};
