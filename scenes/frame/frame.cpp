@@ -113,12 +113,13 @@ Image wireframe_of(const Shot& shot, const DrawnFrame& of, const Image& drawn, T
   return result;
 }
 
-Image map_of(const Shot& shot, const Image& drawn, const std::optional<UsedLens>& lens) {
+Image map_of(const Shot& shot, const Image& drawn, const std::optional<UsedLens>& lens,
+             ThreadPool& pool) {
   switch (shot.show) {
-    case Show::coc: return show_coc(drawn, lens->settings.coc, lens->settings.max_coc_px);
+    case Show::coc: return show_coc(drawn, lens->settings.coc, lens->settings.max_coc_px, pool);
     case Show::depth:
       return show_depth(drawn, static_cast<float>(shot.scene->camera.near_m),
-                        static_cast<float>(shot.scene->camera.far_m));
+                        static_cast<float>(shot.scene->camera.far_m), pool);
     default: return drawn;
   }
 }
@@ -239,7 +240,7 @@ Frame make_frame(const Shot& shot, ThreadPool& pool, const FrameHooks& hooks) {
   Frame frame = make_picture(shot, drawn, lens, memory, pool, hooks);
   if (shot.show != Show::image) {
     for (const Image& layer : drawn.parts.behind) {
-      frame.behind.push_back(map_of(shot, layer, lens));
+      frame.behind.push_back(map_of(shot, layer, lens, pool));
     }
   }
   finish_picture(shot, frame, pool, hooks);
@@ -371,7 +372,7 @@ Frame make_picture(const Shot& shot, const DrawnFrame& drawn, const std::optiona
     frame.picture = shot.show == Show::pinhole ? pinhole_of(shot, drawn.parts, pool)
                     : shot.show == Show::wireframe
                         ? wireframe_of(shot, drawn, drawn.parts.picture(), pool)
-                        : map_of(shot, drawn.parts.picture(), lens);
+                        : map_of(shot, drawn.parts.picture(), lens, pool);
   } else if (shot.shard) {
     tell(hooks, FrameStage::sampling);
     frame.sums = accumulation_sums(views_of(shot, drawn, used, memory, hooks),

@@ -235,11 +235,11 @@ PictureOnItsWay refocused(PictureOnItsWay source, const DepthMap& depth,
   put_in_alpha(seen.metres, colour);
   settle_largest_circle(colour, options, used, pool);
   if (options.show == RefocusShow::coc) {
-    return {show_coc(colour, used.settings.coc, std::max(used.settings.max_coc_px, 1e-3f))};
+    return {show_coc(colour, used.settings.coc, std::max(used.settings.max_coc_px, 1e-3f), pool)};
   }
   if (options.show == RefocusShow::depth) {
     const DepthBounds bounds = bounds_of(depth);
-    return {show_depth(colour, bounds.near_m, bounds.far_m)};
+    return {show_depth(colour, bounds.near_m, bounds.far_m, pool)};
   }
   if (options.method.is_auto()) {
     used.choice = auto_filter(colour, used.settings.coc, options.goal, options.max_coc_px, pool);

@@ -63,7 +63,8 @@ TEST_CASE("the grey map is black in focus and white at the largest circle") {
   store_texel(scene, 0, 0, {1, 1, 1, 2.0f}, {});   // in focus
   store_texel(scene, 1, 0, {1, 1, 1, 4.0f}, {});   // half of the circle at infinity
   store_texel(scene, 2, 0, {1, 1, 1, 0.25f}, {});  // far past the largest
-  const Image map = show_coc(scene, {8.0f, 2.0f}, 16.0f);
+  ThreadPool pool{2};
+  const Image map = show_coc(scene, {8.0f, 2.0f}, 16.0f, pool);
   CHECK(load_texel(map, 0, 0).x == 0.0f);
   CHECK(load_texel(map, 1, 0).x == 0.25f);
   CHECK(load_texel(map, 2, 0).x == 1.0f);
@@ -75,7 +76,8 @@ TEST_CASE("the depth view runs from black at near to white at far") {
   store_texel(scene, 0, 0, {0, 0, 0, 0.5f}, {});
   store_texel(scene, 1, 0, {0, 0, 0, 2.0f / 3.0f}, {});  // 1/z half-way between 2 and 1
   store_texel(scene, 2, 0, {0, 0, 0, 1.0f}, {});
-  const Image view = show_depth(scene, 0.5f, 1.0f);
+  ThreadPool pool{2};
+  const Image view = show_depth(scene, 0.5f, 1.0f, pool);
   CHECK(load_texel(view, 0, 0).x == 0.0f);
   CHECK(load_texel(view, 1, 0).x == doctest::Approx(0.5f).epsilon(0.001));
   CHECK(load_texel(view, 2, 0).x == 1.0f);
