@@ -31,7 +31,8 @@ int finish(int status, int failed) {
 int run_command(const Command& command) {
   // Commands that compare say "different" with 1: any error there is a 2.
   const std::string name = name_of(*command.parser);
-  const int failed = name == "compare" || name == "crosscheck" ? kWrongUsage : kFailed;
+  const bool compares = name == "compare" || name == "crosscheck" || name == "golden";
+  const int failed = compares ? kWrongUsage : kFailed;
   try {
     return finish(command.work(), failed);
   } catch (const UsageError& error) {
@@ -51,18 +52,18 @@ int run(std::vector<std::string> arguments) {
   const auto program =
       make_program("softfocus", SOFTFOCUS_VERSION, "Renders scenes with depth of field.");
   const std::vector<Command> commands{
-      add_render_command(*program),       add_join_command(*program),
-      add_refocus_command(*program),      add_apply_command(*program),
-      add_inspect_command(*program),      add_scenes_command(*program),
-      add_methods_command(*program),      add_effects_command(*program),
-      add_candidates_command(*program),   add_profiles_command(*program),
-      add_lens_command(*program),         add_compare_command(*program),
-      add_crosscheck_command(*program),   add_probe_command(*program),
-      add_shaders_command(*program),      add_bench_command(*program),
-      add_shadows_command(*program),      add_relief_command(*program),
-      add_chart_command(*program),        add_stress_command(*program),
-      add_selftest_command(*program),     add_help_command(*program),
-      add_documentation_command(*program)};
+      add_render_command(*program),     add_join_command(*program),
+      add_refocus_command(*program),    add_apply_command(*program),
+      add_inspect_command(*program),    add_scenes_command(*program),
+      add_methods_command(*program),    add_effects_command(*program),
+      add_candidates_command(*program), add_profiles_command(*program),
+      add_lens_command(*program),       add_compare_command(*program),
+      add_crosscheck_command(*program), add_probe_command(*program),
+      add_shaders_command(*program),    add_bench_command(*program),
+      add_shadows_command(*program),    add_relief_command(*program),
+      add_chart_command(*program),      add_stress_command(*program),
+      add_golden_command(*program),     add_selftest_command(*program),
+      add_help_command(*program),       add_documentation_command(*program)};
   try {
     arguments = with_autofocus_joined(std::move(arguments));
     const Parsed parsed = parse(*program, with_parameters_joined(*program, std::move(arguments)));

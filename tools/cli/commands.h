@@ -38,6 +38,7 @@ Command add_shadows_command(CLI::App& program);
 Command add_relief_command(CLI::App& program);
 Command add_chart_command(CLI::App& program);
 Command add_stress_command(CLI::App& program);
+Command add_golden_command(CLI::App& program);
 Command add_selftest_command(CLI::App& program);
 Command add_help_command(CLI::App& program);
 Command add_documentation_command(CLI::App& program);

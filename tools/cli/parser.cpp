@@ -311,6 +311,11 @@ void add_optional_argument(CLI::App& parser, const std::string& name, const std:
   parser.add_option(name, value, help)->type_name("");
 }
 
+void add_optional_arguments(CLI::App& parser, const std::string& name, const std::string& help,
+                            std::vector<std::string>& values) {
+  parser.add_option(name, values, help)->type_name("");
+}
+
 void offer(CLI::App& parser, const std::string& option, Choices choices) {
   root_of(parser).choices[parser.get_option(option)] = std::move(choices);
 }

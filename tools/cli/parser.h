@@ -79,6 +79,10 @@ void add_argument(CLI::App& parser, const std::string& name, const std::string& 
 void add_optional_argument(CLI::App& parser, const std::string& name, const std::string& help,
                            std::string& value);
 
+/// Positional arguments, any number of them.
+void add_optional_arguments(CLI::App& parser, const std::string& name, const std::string& help,
+                            std::vector<std::string>& values);
+
 /// Names what the value of an option or argument can be, for completions and man pages. A type
 /// such as `image|coc|depth` says it already.
 void offer(CLI::App& parser, const std::string& option, Choices choices);

@@ -36,11 +36,11 @@ std::string csv_field(const Json& value) {
 /// tools/report/report.html with its style sheet and script; the build makes it.
 extern const std::string_view kReportTemplate;
 
-std::string report_page(const Json& report) {
+std::string page_with(std::string_view page_template, const Json& results) {
   constexpr std::string_view kPlace = "id=\"results\">";
-  const std::size_t place = kReportTemplate.find(kPlace) + kPlace.size();
-  std::string page{kReportTemplate.substr(0, place)};
-  for (const char c : json_text(report)) {
+  const std::size_t place = page_template.find(kPlace) + kPlace.size();
+  std::string page{page_template.substr(0, place)};
+  for (const char c : json_text(results)) {
     // Markup in a text, such as "</script>", would end the results. Only texts have this sign.
     if (c == '<') {
       page += "\\u003c";
@@ -48,9 +48,11 @@ std::string report_page(const Json& report) {
       page += c;
     }
   }
-  page += kReportTemplate.substr(place + std::string_view{"null"}.size());
+  page += page_template.substr(place + std::string_view{"null"}.size());
   return page;
 }
+
+std::string report_page(const Json& report) { return page_with(kReportTemplate, report); }
 
 Json json_list(const std::vector<Json>& values) {
   Json list = Json::array();

@@ -32,6 +32,9 @@
 
 namespace softfocus {
 
+/// A page (report.html) with results in place of its own, which are null.
+std::string page_with(std::string_view page, const Json& results);
+
 /// The report as one page that needs no other file.
 std::string report_page(const Json& report);
 

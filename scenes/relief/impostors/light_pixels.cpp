@@ -11,7 +11,7 @@
 namespace softfocus {
 namespace {
 
-constexpr glm::vec4 kFarAway{0.0f, 0.0f, 0.0f, 65504.0f};
+constexpr glm::vec4 kNothingThere{0.0f, 0.0f, 0.0f, 65504.0f};
 
 /// The number that most texels have.
 std::size_t usual_material(const ReliefTexture& relief) {
@@ -30,7 +30,7 @@ void map_alone(const WarpedRelief& warped, const PlaneMapping& mapping, const Im
   }
   pool.for_each(mapping.area.y_end - mapping.area.y_begin, [&](int line) {
     for (int x = mapping.area.x_begin; x < mapping.area.x_end; ++x) {
-      store_texel<Format::rgba16f>(picture, x, mapping.area.y_begin + line, kFarAway, Profile{});
+      store_texel<Format::rgba16f>(picture, x, mapping.area.y_begin + line, kNothingThere, Profile{});
     }
   });
   map_relief(warped, mapping, picture, pool);
