@@ -30,7 +30,8 @@ void map_alone(const WarpedRelief& warped, const PlaneMapping& mapping, const Im
   }
   pool.for_each(mapping.area.y_end - mapping.area.y_begin, [&](int line) {
     for (int x = mapping.area.x_begin; x < mapping.area.x_end; ++x) {
-      store_texel<Format::rgba16f>(picture, x, mapping.area.y_begin + line, kNothingThere, Profile{});
+      store_texel<Format::rgba16f>(picture, x, mapping.area.y_begin + line, kNothingThere,
+                                   Profile{});
     }
   });
   map_relief(warped, mapping, picture, pool);
