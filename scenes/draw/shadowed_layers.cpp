@@ -34,16 +34,18 @@ bool is_projected(const SceneShadows& shadows, ShadowKind kind) {
 // Of one light, that has come or has moved.
 void place_light(SceneShadows& shadows, std::size_t i, ShadowKind kind, const ShadowLight& light,
                  std::span<const std::uint8_t> wanted, ThreadPool& pool) {
-  shadows.placed[i] = light;
+  // `placed` comes last: what is not made whole, for want of memory, is made again.
+  shadows.placed[i] = {};
+  for (std::vector<KeptBits>& of_layer : shadows.kept_bits) of_layer[i] = {};
   shadows.projected[i] = is_projected(shadows, kind)
                              ? project_by_grid(shadows.facets, light, pool, wanted)
                              : without_triangles(shadows.facets, light);
   shadows.maps[i] = {};
   shadows.volumes[i] = {};
-  for (std::vector<KeptBits>& of_layer : shadows.kept_bits) of_layer[i] = {};
   if (kind == ShadowKind::volumes) {
     shadows.volumes[i] = make_shadow_volumes(shadows.facets, shadows.joined, light);
   }
+  shadows.placed[i] = light;
 }
 
 // Draws projected shadows, dark sides and volumes of the lights that have moved, and takes the
@@ -66,12 +68,21 @@ void draw_bits(SceneShadows& shadows, std::size_t layer, const ShadowView& view,
                                       shadows.volume_count, mask, pool);
     }
     shadows.volume_rays += kept[i].rays;
-    if (moved[i] != nullptr) {
-      kept[i].mask.resize(mask.size());
-      for (std::size_t p = 0; p < mask.size(); ++p) kept[i].mask[p] = mask[p] & bit;
-    } else {
-      for (std::size_t p = 0; p < mask.size(); ++p) mask[p] |= kept[i].mask[p];
-    }
+    const bool is_costly =
+        !shadows.projected[i].triangles.empty() || !shadows.volumes[i].casters.empty();
+    const bool is_kept = moved[i] != nullptr && shadows.view_stays && is_costly;
+    if (moved[i] != nullptr && !is_kept) continue;
+    if (is_kept) kept[i].mask.resize(mask.size());
+    pool.for_each(view.height, [&](int y) {
+      const std::size_t begin = static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width);
+      for (std::size_t p = begin; p < begin + static_cast<std::size_t>(view.width); ++p) {
+        if (is_kept) {
+          kept[i].mask[p] = mask[p] & bit;
+        } else {
+          mask[p] |= kept[i].mask[p];
+        }
+      }
+    });
   }
 }
 
@@ -423,8 +434,10 @@ void set_facets(SceneShadows& shadows, const Scene& scene, std::span<const Light
 
 // Lights that have moved are projected onto the `wanted` receivers alone, or onto all. A light that
 // stays while these change is projected onto all, once.
-void place_lights(SceneShadows& shadows, std::span<const Light> lights,
-                  std::span<const std::uint8_t> wanted, bool wanted_are_new, ThreadPool& pool) {
+template <class Wanted>
+void place_lights(SceneShadows& shadows, std::span<const Light> lights, const Wanted& find_wanted,
+                  bool wanted_are_new, ThreadPool& pool) {
+  std::optional<std::vector<std::uint8_t>> wanted;
   const std::size_t count = shadows.lights.size();
   const bool is_first = shadows.placed.empty();
   shadows.placed.resize(count);
@@ -436,7 +449,9 @@ void place_lights(SceneShadows& shadows, std::span<const Light> lights,
     const ShadowLight placed = shadow_light(light);
     const bool stays = !is_first && placed == shadows.placed[i];
     if (stays && (shadows.projected[i].of_all || !wanted_are_new)) continue;
-    place_light(shadows, i, light.shadows, placed, stays ? std::span<const std::uint8_t>{} : wanted,
+    if (!stays && !wanted) wanted = find_wanted();
+    place_light(shadows, i, light.shadows, placed,
+                stays ? std::span<const std::uint8_t>{} : std::span<const std::uint8_t>{*wanted},
                 pool);
   }
 }
@@ -459,7 +474,8 @@ std::vector<std::uint8_t> seen_receivers(const SceneShadows& shadows) {
 void place_shadows(SceneShadows& shadows, const Scene& scene, std::span<const Light> lights,
                    double frame, ThreadPool& pool) {
   set_facets(shadows, scene, lights, frame);
-  place_lights(shadows, lights, {}, true, pool);
+  place_lights(
+      shadows, lights, [] { return std::vector<std::uint8_t>{}; }, true, pool);
 }
 
 MaskDraws cut_shadows(const SceneShadows& shadows, const CameraMatrices& camera, int width,
@@ -476,15 +492,18 @@ void add_shadows(const PreparedScene& prepared, const CameraMatrices& camera, do
   const int width = layers[0]->width, height = layers[0]->height;
   SeenFrom from{camera, frame, width, height, layers.size(), behind_before, prepared.hidden};
   const bool sees_others = !shadows.seen_from || *shadows.seen_from != from;
+  shadows.view_stays = !sees_others;
   if (sees_others) {
+    shadows.seen_from.reset();
     shadows.seen = draw_seen_facets(shadows.numbered, scene, camera, frame, width, height,
                                     layers.size(), pool, behind_before, prepared.hidden);
     shadows.kept_bits.assign(layers.size(), std::vector<KeptBits>(shadows.lights.size()));
-    shadows.seen_from = std::move(from);
   }
   if (prepared.on_shadows) prepared.on_shadows(false);
   set_facets(shadows, scene, lights, frame);
-  place_lights(shadows, lights, seen_receivers(shadows), sees_others, pool);
+  place_lights(
+      shadows, lights, [&] { return seen_receivers(shadows); }, sees_others, pool);
+  shadows.seen_from = std::move(from);
   if (prepared.on_shadows) prepared.on_shadows(true);
   draw_masks(shadows, scene, lights, camera, width, height, shadows.pass.profile, pool);
   const Tiles tiles = find_masks(shadows, width, height, pool);

@@ -48,7 +48,7 @@ struct SeenFrom {
   bool operator==(const SeenFrom&) const = default;
 };
 
-/// A light's bits of a layer's mask, and VolumeCount's rays. Maps have none.
+/// A light's bits of a layer's mask, and VolumeCount's rays.
 struct KeptBits {
   std::vector<std::uint8_t> mask{};
   std::size_t rays = 0;
@@ -73,6 +73,7 @@ struct SceneShadows {
   bool by_rays = false;         ///< every pixel by a ray to each light, whatever its kind
   std::size_t volume_rays = 0;  ///< what draw_volume_mask() returned for the last frame's layers
   std::optional<SeenFrom> seen_from{};
+  bool view_stays = false;                   ///< since the frame before: masks are worth keeping
   std::vector<std::vector<SeenFacet>> seen;  ///< of each layer
   /// Of each layer, of each of `lights`: empty if it has to be drawn.
   std::vector<std::vector<KeptBits>> kept_bits{};

@@ -175,13 +175,14 @@ void choose_and_draw(const Shot& shot, const DrawnFrame& drawn, const LensViewIn
                 : stage == AutoStage::sampling  ? FrameStage::sampling
                                                 : FrameStage::checking);
   };
-  AutoPicture found = auto_picture({.views = views,
-                                    .settings = frame.lens->settings,
-                                    .goal = shot.goal,
-                                    .limits = {shot.most_coc_px, drawn.triangles},
-                                    .verify = shot.verify,
-                                    .on_stage = on_stage},
-                                   pool);
+  AutoPicture found = auto_picture(
+      {.views = views,
+       .settings = frame.lens->settings,
+       .goal = shot.goal,
+       .limits = {shot.most_coc_px, drawn.triangles.value_or(triangle_count(*shot.scene))},
+       .verify = shot.verify,
+       .on_stage = on_stage},
+      pool);
   frame.picture = std::move(found.picture);
   const AutoMethod& choice = found.choice;
   frame.method = find_method_choice(choice.method);
@@ -205,6 +206,26 @@ LensViewInput views_of(const Shot& shot, const DrawnFrame& drawn, const UsedLens
   }
   return views;
 }
+
+}  // namespace
+
+namespace {
+
+// The hooks that drawing tells, while this lives: they refer to the caller's.
+struct ToldHooks {
+  ToldHooks(PreparedScene& of, const FrameHooks& hooks) : prepared(of) {
+    prepared.on_light_points = hooks.on_light_points;
+    prepared.on_shadows = hooks.on_shadows;
+  }
+  ~ToldHooks() {
+    prepared.on_light_points = {};
+    prepared.on_shadows = {};
+  }
+  ToldHooks(const ToldHooks&) = delete;
+  ToldHooks& operator=(const ToldHooks&) = delete;
+
+  PreparedScene& prepared;
+};
 
 }  // namespace
 
@@ -256,7 +277,6 @@ void draw_shot(const Shot& shot, FrameMemory& memory, DrawnFrame& drawn, ThreadP
   drawn.layers = layers_of(shot);
   if (hooks.draw) {
     drawn.parts = hooks.draw(drawn.view, width, height, drawn.layers);
-    drawn.triangles = triangle_count(*shot.scene);
     return;
   }
   if (!memory.prepared) {
@@ -267,8 +287,7 @@ void draw_shot(const Shot& shot, FrameMemory& memory, DrawnFrame& drawn, ThreadP
     }
   }
   drawn.stand_ins = memory.prepared->stand_ins;
-  memory.prepared->on_light_points = hooks.on_light_points;
-  memory.prepared->on_shadows = hooks.on_shadows;
+  const ToldHooks told{*memory.prepared, hooks};
   const bool is_after_others = !shot.effects.empty() && is_of_frames(*shot.effects.front().effect);
   if (!is_after_others || drawn.layers > 1) {
     // Maps show one surface a pixel; methods that draw the scene have --jitter.
@@ -280,8 +299,6 @@ void draw_shot(const Shot& shot, FrameMemory& memory, DrawnFrame& drawn, ThreadP
   if (is_after_others) {
     draw_after_others(shot, shot.effects.front(), *memory.prepared, width, height, drawn, pool);
   }
-  memory.prepared->on_light_points = {};
-  memory.prepared->on_shadows = {};
   drawn.triangles = memory.prepared->triangles;
   if (is_filtered(shot) && drawn.layers > 0) {
     drawn.objects = object_numbers_for(*shot.method.filter, *shot.scene, drawn.view, shot.frame,

@@ -108,8 +108,9 @@ struct DrawnFrame {
   /// alone; a method that reads more has it drawn.
   std::size_t layers = 0;
   std::shared_ptr<const StandIns> stand_ins{};  ///< by which it was drawn, if any
-  std::size_t triangles = 0;                    ///< that were drawn as such
-  std::vector<std::uint16_t> objects{};         ///< DofInput::objects, if the method reads them
+  /// That were drawn as such; none: all of the scene's.
+  std::optional<std::size_t> triangles{};
+  std::vector<std::uint16_t> objects{};  ///< DofInput::objects, if the method reads them
   std::optional<double> shaded_share{};  ///< of the pixels, where frames take from those before
 };
 

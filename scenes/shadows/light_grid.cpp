@@ -1,6 +1,7 @@
 #include "scenes/shadows/light_grid.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -149,10 +150,7 @@ struct CasterRow {
 };
 
 // The rows of a part of the casters.
-struct RowsOfPart {
-  std::vector<CasterRow> rows;
-  std::size_t entries = 0;
-};
+using RowsOfPart = std::vector<CasterRow>;
 
 constexpr std::size_t kCastersOfRows = 4096;
 
@@ -162,20 +160,20 @@ std::optional<std::vector<RowsOfPart>> caster_rows(const LightGrid& grid,
                                                    std::span<const std::uint32_t> casters,
                                                    std::size_t most, ThreadPool* pool) {
   std::vector<RowsOfPart> parts((casters.size() + kCastersOfRows - 1) / kCastersOfRows);
+  std::atomic<std::size_t> entries{0};  // of all parts so far
   for_each(pool, parts.size(), [&](std::size_t number) {
-    RowsOfPart& part = parts[number];
     const std::size_t begin = number * kCastersOfRows;
     for (const std::uint32_t caster :
          casters.subspan(begin, std::min(kCastersOfRows, casters.size() - begin))) {
+      if (entries.load(std::memory_order_relaxed) > most) return;
+      std::size_t cells = 0;
       for_each_row(grid, facets[caster].corners, [&](int first, int count) {
-        part.rows.push_back({caster, first, count});
-        part.entries += static_cast<std::size_t>(count);
+        parts[number].push_back({caster, first, count});
+        cells += static_cast<std::size_t>(count);
       });
-      if (part.entries > most) return;
+      entries.fetch_add(cells, std::memory_order_relaxed);
     }
   });
-  std::size_t entries = 0;
-  for (const RowsOfPart& part : parts) entries += part.entries;
   if (entries > most) return {};
   return parts;
 }
@@ -227,7 +225,7 @@ LightGrid make_light_grid(const Facets& facets, const ShadowLight& light, Thread
                           static_cast<std::size_t>(grid.cells);
   grid.begins.assign(cell_count + 1, 0);
   for (const RowsOfPart& part : *rows) {
-    for (const auto& [caster, first, count] : part.rows) {
+    for (const auto& [caster, first, count] : part) {
       for (int i = 0; i < count; ++i) ++grid.begins[static_cast<std::size_t>(first + i) + 1];
     }
   }
@@ -235,7 +233,7 @@ LightGrid make_light_grid(const Facets& facets, const ShadowLight& light, Thread
   grid.casters.resize(grid.begins.back());
   std::vector<std::uint32_t> next(grid.begins.begin(), grid.begins.end() - 1);
   for (const RowsOfPart& part : *rows) {
-    for (const auto& [caster, first, count] : part.rows) {
+    for (const auto& [caster, first, count] : part) {
       for (int i = 0; i < count; ++i) {
         grid.casters[next[static_cast<std::size_t>(first + i)]++] = caster;
       }

@@ -178,6 +178,9 @@ int compare_pictures(const CompareOptions& options) {
     findings.measured =
         measure_pictures(image_b, image_a, regions ? &*regions : nullptr, options.measures, pool);
   }
+  if (options.code_threshold) {
+    findings.codes = compare_codes(image_a, image_b, *options.code_threshold);
+  }
   if (options.point_radius_px) {
     const double radius = *options.point_radius_px;
     findings.point = {point_shape(image_a), point_shape(image_b), radius,

@@ -71,6 +71,10 @@ constexpr Parameter
     kSearch{"search",
         "Of --max-pixels: how near a pixel may lie in the other picture, for edges that moved",
         0, 8, 0, "px", "PIXELS", "", 1},
+    kThreshold{"threshold",
+        "Count as pixelmatch, odiff, idiff and ImageMagick do too, in codes of 8 bits: pixels that "
+        "differ by more than this in YIQ; pixelmatch's 0.1",
+        0.0, 1.0, kUsualThreshold, "", "T"},
     kPoint{"point",
         "The pictures are of one bright point on black: compare light and shape with the disc of "
         "this radius",
@@ -124,10 +128,10 @@ void check_sequences(const CompareOptions& options) {
   }
   if (!options.first.empty() || options.regions || options.point_radius_px ||
       options.flip_map_file || options.ulp_map_file || options.measures.hdr_flip ||
-      has_limits(options.tolerance)) {
+      options.code_threshold || has_limits(options.tolerance)) {
     throw UsageError(
         "--flicker compares two sequences; leave out A, B, --diff, --diff-ulps, --regions, "
-        "--hdr, --point, --max-ulps, --max-flip, --max-error and --max-pixels");
+        "--hdr, --threshold, --point, --max-ulps, --max-flip, --max-error and --max-pixels");
   }
   if (options.frames.size() != options.truth.size()) {
     throw UsageError("--flicker has " + std::to_string(options.frames.size()) +
@@ -167,6 +171,7 @@ void add_compare_options(CLI::App& parser, CompareOptions& options) {
           "Write a map of differing bits: black equal, blue 1 half-ULP to red 2^15",
           options.ulp_map_file);
   begin_group(parser, "Measures");
+  add_parameter(parser, kThreshold, "", options.code_threshold);
   add_flag(parser, "--hdr", "HDR-FLIP too: the largest over all exposures of B",
            options.measures.hdr_flip);
   add_parameter(parser, kPixelsPerDegree, "67.0206, a 4K screen as wide as it is far",

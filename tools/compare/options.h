@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "dof/measure/code_difference.h"
 #include "dof/measure/difference.h"
 #include "dof/measure/measures.h"
 #include "tools/cli/parser.h"
@@ -60,6 +61,8 @@ struct CompareOptions {
   std::vector<std::filesystem::path> scene_path;
   LensOptions lens;
   std::optional<double> fov_y_degrees;
+
+  std::optional<double> code_threshold;  ///< codes are compared too (dof/measure/code_difference.h)
 
   std::optional<double> point_radius_px;  ///< both are images of a point with this disc
 

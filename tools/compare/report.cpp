@@ -116,6 +116,20 @@ void print_whole(const Measures& whole) {
   if (whole.hdr_flip) print_line("HDR-FLIP", short_number(*whole.hdr_flip));
 }
 
+/// By the names that other programs have for it.
+void print_codes(const CodeDifference& codes) {
+  print_line("codes of 8 bits", "AE " + std::to_string(codes.pixels) + " pixels, MAE " +
+                                    short_number(codes.mean_error) + ", RMSE " +
+                                    short_number(codes.rms_error) + ", PSNR " +
+                                    short_number(codes.psnr_db) + " dB");
+  if (codes.max_error > 0) {
+    print_line("", "PAE " + std::to_string(codes.max_error) + " of 255, at " +
+                       std::to_string(codes.max_x) + "," + std::to_string(codes.max_y));
+  }
+  print_line("YIQ", std::to_string(codes.beyond) + " pixels beyond the threshold, and " +
+                        std::to_string(codes.anti_aliased) + " of smooth edges");
+}
+
 void print_histogram(const Difference& difference) {
   print_line("half-ULPs", "values");
   for (std::size_t bucket = 0; bucket < difference.ulp_histogram.size(); ++bucket) {
@@ -261,6 +275,7 @@ void print_compare_text(const CompareFindings& findings) {
                             short_number(static_cast<double>(findings.focus_px)) + " px");
   }
   if (findings.lens) print_regions(*findings.measured);
+  if (findings.codes) print_codes(*findings.codes);
   if (findings.point) print_point(*findings.point);
   for (const LimitFinding& limit : findings.limits) print_line("limit", limit_text(limit));
   if (!findings.go_on.empty()) print_line("to go on", findings.go_on);
@@ -276,6 +291,16 @@ void print_compare_json(const CompareFindings& findings) {
             {"psnr_db", number_or_null(d.psnr_db)},
             {"first", nullptr},
             {"histogram", Json::array()}};
+  if (findings.codes) {
+    const CodeDifference& codes = *findings.codes;
+    json["codes"] = Json{{"ae", codes.pixels},
+                         {"mae", codes.mean_error},
+                         {"rmse", codes.rms_error},
+                         {"psnr_db", number_or_null(codes.psnr_db)},
+                         {"pae", codes.max_error},
+                         {"beyond", codes.beyond},
+                         {"anti_aliased", codes.anti_aliased}};
+  }
   if (d.differing != 0) {
     json["first"] = {{"x", d.first_x},
                      {"y", d.first_y},

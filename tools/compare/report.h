@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "dof/measure/code_difference.h"
 #include "dof/measure/difference.h"
 #include "dof/measure/measures.h"
 #include "dof/measure/point_image.h"
@@ -61,6 +62,7 @@ struct CompareFindings {
   std::optional<AssumedLens> lens;           ///< of --regions: then measured->by_region is filled
   std::vector<std::string> doubts;           ///< lens_doubts()
   std::vector<LimitFinding> limits;
+  std::optional<CodeDifference> codes;
   std::optional<PointFindings> point;
   float focus_px = kFocusRadiusPx;  ///< the largest circle of the region in focus
   std::string go_on;                ///< for those to whom the pictures are not equal enough

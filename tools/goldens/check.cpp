@@ -30,8 +30,17 @@ std::string in_quotes(const std::string& text) {
 
 std::string own_program_quoted() {
   const std::optional<std::filesystem::path> own = own_program();
-  if (!own) throw FileError("the system does not tell where the running program's file is");
-  return in_quotes(own->string());
+  return own ? in_quotes(own->string()) : "softfocus";
+}
+
+// Goldens are made side by side: one thread each.
+std::string with_one_thread(const std::string& words) {
+  return words.find("--threads") == std::string::npos ? words + " --threads 1" : words;
+}
+
+bool has_threads(std::string_view words) {
+  return words.starts_with("render ") || words.starts_with("apply ") ||
+         words.starts_with("refocus ");
 }
 
 std::string replaced(std::string text, std::string_view what, const std::string& by) {
@@ -144,9 +153,7 @@ void remove_made(const Golden& golden, const GoldenPlaces& places) {
 std::string shell_command(const Golden& golden, const GoldenPlaces& places) {
   const std::string out = in_quotes(std::filesystem::absolute(made_file(golden, places)).string());
   if (golden.command.empty()) {
-    // Goldens are made side by side: one thread each.
-    std::string words = golden.options.empty() ? "" : " " + golden.options;
-    if (words.find("--threads") == std::string::npos) words += " --threads 1";
+    const std::string words = with_one_thread(golden.options.empty() ? "" : " " + golden.options);
     std::string what = " render " + in_quotes(golden.scene);
     if (!golden.pipeline.empty()) {
       what = " apply " + in_quotes(golden.input) + " --pipeline " + in_quotes(golden.pipeline);
@@ -158,9 +165,12 @@ std::string shell_command(const Golden& golden, const GoldenPlaces& places) {
   std::string command = golden.command;
   constexpr std::string_view kOwn = "softfocus ";
   if (command.starts_with(kOwn)) {
-    command = own_program_quoted() + " " + command.substr(kOwn.size());
+    const std::string words = command.substr(kOwn.size());
+    command = own_program_quoted() + " " + (has_threads(words) ? with_one_thread(words) : words);
   }
   if (command.find("{out}") == std::string::npos) return command + " -o " + out;
+  // The name comes in quotes of its own.
+  for (const char* quoted : {"'{out}'", "\"{out}\""}) command = replaced(command, quoted, "{out}");
   return replaced(command, "{out}", out);
 }
 

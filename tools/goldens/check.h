@@ -35,7 +35,7 @@ std::filesystem::path made_file(const Golden& golden, const GoldenPlaces& places
 /// Removes it, and the sidecar that says how it was made.
 void remove_made(const Golden& golden, const GoldenPlaces& places);
 
-/// What a shell runs. Throws FileError if the running program's file is not known.
+/// What a shell runs.
 std::string shell_command(const Golden& golden, const GoldenPlaces& places);
 
 /// Makes a golden's file. The reason if it does not, in a line.

@@ -245,13 +245,17 @@ int accept(const GoldenOptions& options) {
   std::vector<Golden> goldens = wanted_goldens(options);
   make_directory(places.report);
   std::error_code ignored;
+  const auto told = std::filesystem::last_write_time(manifest_of(options), ignored);
+  const auto is_there = [&](const Golden& golden) {
+    return std::filesystem::is_regular_file(made_file(golden, places), ignored);
+  };
   if (options.all) {
-    std::erase_if(goldens, [&](const Golden& golden) {
-      return !std::filesystem::is_regular_file(made_file(golden, places), ignored);
-    });
+    std::erase_if(goldens, [&](const Golden& golden) { return !is_there(golden); });
   }
   for (Golden& golden : goldens) {
-    if (!std::filesystem::is_regular_file(made_file(golden, places), ignored)) {
+    // What was made before the manifest was written may have been made otherwise.
+    if (!is_there(golden) ||
+        std::filesystem::last_write_time(made_file(golden, places), ignored) < told) {
       make_or_throw(golden, places);
     }
     take(golden, options, places);

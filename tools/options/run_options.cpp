@@ -204,7 +204,8 @@ void check_memory(std::string_view option, PictureSize size, std::uint64_t bytes
 }
 
 void check_shadow_memory(const Scene& scene) {
-  constexpr std::uint64_t kBytesPerFacet = 160;  // its corners, neighbours and place in the grid
+  // Its corners, neighbours and place in the grid, and a mark of each thread's.
+  const std::uint64_t bytes_per_facet = 160 + 4 * static_cast<std::uint64_t>(hardware_threads());
   std::uint64_t maps = 0;
   bool has_shadows = false;
   for (const Light& light : scene.lights) {
@@ -214,7 +215,7 @@ void check_shadow_memory(const Scene& scene) {
     const int sides = light.kind == LightKind::point ? 6 : light.map.cascades;
     maps += size * size * sizeof(float) * static_cast<std::uint64_t>(sides);
   }
-  const std::uint64_t facets = has_shadows ? triangle_count(scene) * kBytesPerFacet : 0;
+  const std::uint64_t facets = has_shadows ? triangle_count(scene) * bytes_per_facet : 0;
   const auto there = memory_bytes();
   if (!there || maps + facets <= *there) return;
   throw UsageError("the scene's shadows need " + gigabytes(maps) + " for maps and " +

@@ -41,7 +41,7 @@ struct Opened {
 };
 
 /// Of a scene's triangles: those that cast, those on which shadows can fall, and of all lights the
-/// projected triangles, or the casters that have volumes.
+/// projected triangles (of one that has moved, on what is seen), or the casters that have volumes.
 struct ShadowCounts {
   std::size_t casters = 0, receivers = 0, projected = 0, volumes = 0;
 };

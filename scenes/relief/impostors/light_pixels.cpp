@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstddef>
 
 #include "raster/images/texel.h"
@@ -58,6 +59,7 @@ std::vector<std::uint32_t> normals_as_colours(const ReliefTexture& relief) {
 void draw_lit_pixels(const ReliefTexture& relief, const WarpedPlanes& warped,
                      const PlaneMapping& mapping, const CameraMatrices& camera, PixelLights& lights,
                      Image& picture, ThreadPool& pool) {
+  assert(!relief.materials.empty());
   map_alone(warped.unlit, mapping, picture, lights.unlit, pool);
   map_alone(warped.normals, mapping, picture, lights.normals, pool);
   const ReliefMaterial& kind = relief.materials[usual_material(relief)];

@@ -72,6 +72,13 @@ TEST_CASE("golden: what stays passes; what changes fails, is shown, and can be a
   CHECK(contains(read_file(manifest), std::string{found["goldens"][0]["hash"]}));
   CHECK(golden("check", folder).status == 0);
   CHECK(contains(golden("accept", folder, {"--all"}).out, "nothing to accept"));
+
+  // A picture that was made before the manifest said otherwise is made again.
+  replace_in(manifest, "--f-number 1", "--f-number 1.2");
+  CHECK(golden("check", folder).status == 1);
+  replace_in(manifest, "--f-number 1.2", "--f-number 1.4");
+  CHECK(golden("accept", folder, {"small"}).status == 0);
+  CHECK(golden("check", folder).status == 0);
 }
 
 TEST_CASE("golden: a picture within its tolerance passes, and says by how much it does not") {
