@@ -63,6 +63,7 @@ std::vector<Golden> wanted_goldens(const GoldenOptions& options) {
                                     [&](const Golden& golden) { return golden.name == name; });
     if (found == all.end()) {
       std::vector<std::string> names;
+      names.reserve(all.size());
       for (const Golden& golden : all) names.push_back(golden.name);
       throw UsageError("'" + manifest_of(options).string() + "' has no golden '" + name + "'" +
                        did_you_mean(name, names));

@@ -310,8 +310,8 @@ TEST_CASE("relief: a box of six faces is shown, measured and written") {
 
 TEST_CASE("relief turn: pixels are lit with a moving light alone, and renewals are traced") {
   const TemporaryDirectory folder;
-  const Words turn{"relief", "turn", "figures", "--zoom", "0.2", "--frames", "8", "--every", "8",
-                   "--size", "48x48"};
+  const Words turn{"relief", "turn",    "figures", "--zoom", "0.2",  "--frames",
+                   "8",      "--every", "8",       "--size", "48x48"};
   const auto with = [&](const Words& more) {
     Words words = turn;
     words.insert(words.end(), more.begin(), more.end());
