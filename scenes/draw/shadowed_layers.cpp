@@ -35,7 +35,7 @@ bool is_projected(const SceneShadows& shadows, ShadowKind kind) {
 void place_light(SceneShadows& shadows, std::size_t i, ShadowKind kind, const ShadowLight& light,
                  std::span<const std::uint8_t> wanted, ThreadPool& pool) {
   // `placed` comes last: what is not made whole, for want of memory, is made again.
-  shadows.placed[i] = {};
+  shadows.placed[i].reset();
   for (std::vector<KeptBits>& of_layer : shadows.kept_bits) of_layer[i] = {};
   shadows.projected[i] = is_projected(shadows, kind)
                              ? project_by_grid(shadows.facets, light, pool, wanted)
@@ -111,7 +111,7 @@ void draw_masks_by_rays(SceneShadows& shadows, const ShadowView& view, glm::dvec
     shadows.masks[layer].assign(shadows.seen[layer].size(), 0);
   }
   for (std::size_t light = 0; light < shadows.lights.size(); ++light) {
-    const ShadowTruth truth{shadows.facets, shadows.placed[light], view, eye, true};
+    const ShadowTruth truth{shadows.facets, *shadows.placed[light], view, eye, true};
     for (std::size_t layer = 0; layer < shadows.seen.size(); ++layer) {
       const std::vector<std::uint8_t> is_dark =
           dark_pixels(truth, shadows.seen[layer], view.width, view.height, pool);
@@ -151,7 +151,7 @@ void soften_layer(SceneShadows& shadows, std::span<const Light> lights, std::siz
     const Light& light = lights[shadows.lights[i]];
     if (light.terminator == Terminator::facets) continue;
     softened.push_back(
-        {light.terminator, shadows.placed[i], static_cast<int>(i),
+        {light.terminator, *shadows.placed[i], static_cast<int>(i),
          terminator_shares(shadows.shares[layer][i], shadows.seen[layer].size(), light)});
   }
   soften_terminators(shadows.facets, shadows.surfaces, softened, shadows.seen[layer], view, eye,
@@ -422,13 +422,14 @@ void set_facets(SceneShadows& shadows, const Scene& scene, std::span<const Light
                 double frame) {
   const bool has_facets = shadows.frame && (*shadows.frame == frame || !shadows.moves);
   if (has_facets) return;
+  shadows.frame.reset();
+  shadows.placed.clear();
   shadows.facets = scene_facets(scene, frame);
   if (has_terminators(lights, shadows)) shadows.surfaces = curved_surfaces(scene, frame);
   const bool has_volumes = std::any_of(
       shadows.lights.begin(), shadows.lights.end(),
       [&](std::size_t number) { return lights[number].shadows == ShadowKind::volumes; });
   if (has_volumes) shadows.joined = join_facets(shadows.facets);
-  shadows.placed.clear();
   shadows.frame = frame;
 }
 
@@ -439,7 +440,6 @@ void place_lights(SceneShadows& shadows, std::span<const Light> lights, const Wa
                   bool wanted_are_new, ThreadPool& pool) {
   std::optional<std::vector<std::uint8_t>> wanted;
   const std::size_t count = shadows.lights.size();
-  const bool is_first = shadows.placed.empty();
   shadows.placed.resize(count);
   shadows.projected.resize(count);
   shadows.maps.resize(count);
@@ -447,7 +447,7 @@ void place_lights(SceneShadows& shadows, std::span<const Light> lights, const Wa
   for (std::size_t i = 0; i < count; ++i) {
     const Light& light = lights[shadows.lights[i]];
     const ShadowLight placed = shadow_light(light);
-    const bool stays = !is_first && placed == shadows.placed[i];
+    const bool stays = shadows.placed[i] == placed;
     if (stays && (shadows.projected[i].of_all || !wanted_are_new)) continue;
     if (!stays && !wanted) wanted = find_wanted();
     place_light(shadows, i, light.shadows, placed,

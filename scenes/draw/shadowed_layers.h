@@ -63,8 +63,9 @@ struct SceneShadows {
   bool moves = false;               ///< whether objects are elsewhere at another frame
   std::optional<double> frame;      ///< of facets and projected
   Facets facets;
-  CurvedSurfaces surfaces;          ///< if a light's terminator asks for them
-  std::vector<ShadowLight> placed;  ///< where `lights` were for what follows
+  CurvedSurfaces surfaces;  ///< if a light's terminator asks for them
+  /// Where `lights` were for what follows; none of one for which it is yet to be made.
+  std::vector<std::optional<ShadowLight>> placed;
   /// Of each of `lights`. Of other kinds than projected it has no triangles, only the dark sides.
   std::vector<ProjectedShadows> projected;
   JoinedFacets joined;                 ///< if a light has volumes

@@ -44,13 +44,6 @@ void check_same_size(const NamedPicture& a, const NamedPicture& b) {
                    "; they must be of one size");
 }
 
-void clear_alpha(Image& image) {
-  for (int y = 0; y < image.height; ++y) {
-    const auto values = row<std::uint16_t>(image, y);
-    for (std::size_t i = 3; i < values.size(); i += 4) values[i] = 0;
-  }
-}
-
 void check_depths(const NamedPicture& of) {
   const Image& image = of.picture.image;
   for (int y = 0; y < image.height; ++y) {

@@ -25,6 +25,8 @@ struct Tolerance {
   bool is_percent = false;           ///< max_pixels is of all pixels
   std::optional<double> max_difference;
   std::optional<int> search_px;
+
+  bool operator==(const Tolerance&) const = default;
 };
 
 bool counts_pixels(const Tolerance& tolerance);

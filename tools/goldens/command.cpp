@@ -27,6 +27,8 @@
 namespace softfocus {
 namespace {
 
+constexpr std::string_view kOut = "{out}";
+
 struct GoldenOptions {
   std::string action;
   std::string folder;
@@ -34,6 +36,7 @@ struct GoldenOptions {
   std::filesystem::path report;
   int jobs = hardware_threads();
   bool all = false;
+  bool resumes = false;
   bool json = false;
   bool quiet = false;
 };
@@ -43,9 +46,57 @@ std::filesystem::path manifest_of(const GoldenOptions& options) {
 }
 
 GoldenPlaces places_of(const GoldenOptions& options) {
-  return {options.folder, options.report.empty() ? std::filesystem::path{options.folder} / "report"
-                                                 : options.report};
+  const GoldenPlaces places{options.folder, options.report.empty()
+                                                ? std::filesystem::path{options.folder} / "report"
+                                                : options.report};
+  if (is_same_file(places.report, places.manifest)) {
+    throw UsageError("-o '" + places.report.string() +
+                     "' is the goldens' own folder; another would be right");
+  }
+  return places;
 }
+
+// What is made there goes away again: nothing of the user's may be in it.
+void check_places(const std::vector<Golden>& goldens, const GoldenPlaces& places) {
+  const auto whole = [](const std::filesystem::path& file) {
+    return std::filesystem::weakly_canonical(file).string() + "/";
+  };
+  const std::string report = whole(places.report);
+  for (const Golden& golden : goldens) {
+    for (const std::string& file :
+         {golden.picture.value_or(""), golden.input, golden.shader, golden.pipeline}) {
+      if (file.empty() || !whole(places.manifest / file).starts_with(report)) continue;
+      throw UsageError("golden '" + golden.name + "': '" + file + "' lies in '" +
+                       places.report.string() + "', where checks write; elsewhere would be right");
+    }
+  }
+}
+
+// One check or accept at a time writes there.
+class ReportLock {
+ public:
+  explicit ReportLock(const GoldenPlaces& places) : file_(places.report / "lock") {
+    make_directory(places.made());
+    descriptor_ = open_existing(file_);
+    if (descriptor_ < 0) descriptor_ = create_file(file_);
+    if (descriptor_ < 0 || is_in_use(file_)) {
+      throw UsageError("'" + places.report.string() +
+                       "': another golden command writes there, or it cannot be written to");
+    }
+    mark_in_use(descriptor_);
+  }
+  ~ReportLock() {
+    close_file(descriptor_);
+    std::error_code ignored;
+    std::filesystem::remove(file_, ignored);
+  }
+  ReportLock(const ReportLock&) = delete;
+  ReportLock& operator=(const ReportLock&) = delete;
+
+ private:
+  std::filesystem::path file_;
+  int descriptor_ = -1;
+};
 
 // Nothing, of a manifest that add has yet to make.
 std::string manifest_text(const GoldenOptions& options) {
@@ -68,7 +119,7 @@ std::vector<Golden> wanted_goldens(const GoldenOptions& options) {
       throw UsageError("'" + manifest_of(options).string() + "' has no golden '" + name + "'" +
                        did_you_mean(name, names));
     }
-    wanted.push_back(*found);
+    if (std::find(wanted.begin(), wanted.end(), *found) == wanted.end()) wanted.push_back(*found);
   }
   return wanted;
 }
@@ -77,16 +128,26 @@ std::vector<Golden> wanted_goldens(const GoldenOptions& options) {
 
 constexpr const char* kUnfinished = "unfinished.jsonl";
 
-std::string key_of(const Golden& golden) {
+// How a file was: its size and when it was written.
+void add_state(Hash& hash, const std::filesystem::path& file) {
+  std::error_code error;
+  add_text(hash, file.string());
+  add_number(hash, static_cast<double>(std::filesystem::file_size(file, error)));
+  const auto written = std::filesystem::last_write_time(file, error).time_since_epoch();
+  add_text(hash, std::to_string(written.count()));
+}
+
+// Of all that is known to make a golden what it is. What a scene or a command reads is not.
+std::string key_of(const Golden& golden, const GoldenPlaces& places) {
   Hash hash;
-  add_text(hash, with_golden("", golden));
-  if (const std::optional<std::filesystem::path> own = own_program()) {
-    std::error_code error;
-    add_text(hash, own->string());
-    add_number(hash, static_cast<double>(std::filesystem::file_size(*own, error)));
-    const auto written = std::filesystem::last_write_time(*own, error).time_since_epoch();
-    add_text(hash, std::to_string(written.count()));
+  add_text(hash, std::filesystem::absolute(places.manifest).string());
+  add_state(hash, places.manifest / kManifestName);
+  add_text(hash, golden.name);
+  for (const std::string& file :
+       {golden.picture.value_or(""), golden.input, golden.shader, golden.pipeline, golden.scene}) {
+    if (!file.empty()) add_state(hash, places.manifest / file);
   }
+  if (const std::optional<std::filesystem::path> own = own_program()) add_state(hash, *own);
   return hash_text(hash.value);
 }
 
@@ -107,8 +168,9 @@ std::map<std::string, std::string> passed_before(const std::filesystem::path& fi
 std::vector<GoldenResult> check_all(const std::vector<Golden>& goldens, const GoldenPlaces& places,
                                     const GoldenOptions& options) {
   const std::filesystem::path unfinished = places.report / kUnfinished;
-  const std::map<std::string, std::string> before = passed_before(unfinished);
-  std::ofstream notes{unfinished, std::ios::app};
+  const std::map<std::string, std::string> before =
+      options.resumes ? passed_before(unfinished) : std::map<std::string, std::string>{};
+  std::ofstream notes{unfinished, options.resumes ? std::ios::app : std::ios::trunc};
   std::vector<GoldenResult> results(goldens.size());
   Progress progress{options.quiet};
   std::mutex mutex;
@@ -117,7 +179,7 @@ std::vector<GoldenResult> check_all(const std::vector<Golden>& goldens, const Go
   pool.for_each(static_cast<int>(goldens.size()), [&](int i) {
     const Golden& golden = goldens[static_cast<std::size_t>(i)];
     GoldenResult& result = results[static_cast<std::size_t>(i)];
-    const std::string key = key_of(golden);
+    const std::string key = key_of(golden, places);
     const auto kept = before.find(key);
     if (kept != before.end()) {
       result = {.verdict = Verdict::passes, .why = "", .hash = kept->second};
@@ -130,16 +192,18 @@ std::vector<GoldenResult> check_all(const std::vector<Golden>& goldens, const Go
       notes << json_text(Json{{"key", key}, {"hash", result.hash}}) << std::endl;
     }
   });
-  notes.close();
-  std::error_code ignored;
-  std::filesystem::remove(unfinished, ignored);
   return results;
 }
 
 // --- actions ---
 
-void print_check(const GoldensChecked& checked, const GoldenOptions& options,
-                 const GoldenPlaces& places) {
+std::string accept_command(const GoldenOptions& options) {
+  std::vector<std::string> words{"softfocus", "golden", "accept", options.folder};
+  if (!options.report.empty()) words.insert(words.end(), {"-o", options.report.string()});
+  return command_text(words);
+}
+
+void print_check(const GoldensChecked& checked, const GoldenPlaces& places) {
   std::vector<std::string> to_accept;
   std::size_t passing = 0;
   for (std::size_t i = 0; i < checked.results.size(); ++i) {
@@ -164,20 +228,24 @@ void print_check(const GoldensChecked& checked, const GoldenOptions& options,
     std::string names;
     for (const std::string& name : to_accept) names += " " + name;
     if (to_accept.size() > kMostNamed) names = " --all";
-    std::cout << "; softfocus golden accept " << command_text({options.folder}) << names
-              << " takes the new pictures";
+    std::cout << "; " << checked.accept << names << " takes the new pictures";
   }
   std::cout << '\n';
 }
 
 int check(const GoldenOptions& options) {
   const GoldenPlaces places = places_of(options);
-  GoldensChecked checked{options.folder, wanted_goldens(options), {}};
+  GoldensChecked checked{options.folder, accept_command(options), wanted_goldens(options), {}};
   if (checked.goldens.empty()) {
     throw UsageError("'" + manifest_of(options).string() +
                      "' has no [[golden]]; softfocus golden add makes one");
   }
-  make_directory(places.report);
+  check_places(parse_goldens(manifest_text(options), manifest_of(options)), places);
+  const ReportLock lock{places};
+  std::error_code ignored;
+  // What an earlier check has left is no longer what is shown.
+  std::filesystem::remove_all(places.made(), ignored);
+  make_directory(places.made());
   for (const char* file : {"index.html", "results.json", "junit.xml"}) {
     check_writable(places.report / file);
   }
@@ -188,10 +256,11 @@ int check(const GoldenOptions& options) {
   const Json json = goldens_json(checked, false);
   write_json(places.report / "results.json", json);
   write_text(places.report / "junit.xml", junit_xml(checked));
+  std::filesystem::remove(places.report / kUnfinished, ignored);
   if (options.json) {
     std::cout << json_text(json, 2) << '\n';
   } else {
-    print_check(checked, options, places);
+    print_check(checked, places);
   }
   const bool all_pass =
       std::all_of(checked.results.begin(), checked.results.end(),
@@ -209,15 +278,6 @@ void write_bytes(const std::filesystem::path& file, std::span<const std::byte> b
 void take(Golden& golden, const GoldenOptions& options, const GoldenPlaces& places) {
   const std::filesystem::path made = made_file(golden, places);
   const Image image = read_image_file(made).image;
-  if (golden.picture) {
-    const std::filesystem::path file = places.manifest / *golden.picture;
-    const std::optional<FileFormat> format = format_by_extension(file);
-    if (!format) {
-      throw UsageError("picture '" + file.string() + "': its ending is none of " + format_names());
-    }
-    if (!file.parent_path().empty()) make_directory(file.parent_path());
-    write_bytes(file, encode(image, *format));
-  }
   if (golden.hash || !golden.picture) {
     const std::string hash = hash_text(hash_image(image));
     if (golden.hash && *golden.hash != hash) {
@@ -226,8 +286,16 @@ void take(Golden& golden, const GoldenOptions& options, const GoldenPlaces& plac
     }
     golden.hash = hash;
   }
-  const std::string text = with_golden(manifest_text(options), golden);
-  parse_goldens(text, manifest_of(options));  // a list over several lines would have no end
+  const std::string text = with_golden(manifest_text(options), golden, manifest_of(options));
+  check_writable(manifest_of(options));
+  if (golden.picture) {
+    const std::filesystem::path file = places.manifest / *golden.picture;
+    if (!file.parent_path().empty()) make_directory(file.parent_path());
+    // A program's own file as it is; of ours, what its ending holds.
+    write_bytes(file, made.extension() == file.extension()
+                          ? read_picture_bytes(made)
+                          : encode(image, *format_by_extension(file)));
+  }
   write_text(manifest_of(options), text);
   remove_made(golden, places);
 }
@@ -244,7 +312,8 @@ int accept(const GoldenOptions& options) {
   }
   const GoldenPlaces places = places_of(options);
   std::vector<Golden> goldens = wanted_goldens(options);
-  make_directory(places.report);
+  check_places(parse_goldens(manifest_text(options), manifest_of(options)), places);
+  const ReportLock lock{places};
   std::error_code ignored;
   const auto told = std::filesystem::last_write_time(manifest_of(options), ignored);
   const auto is_there = [&](const Golden& golden) {
@@ -254,19 +323,18 @@ int accept(const GoldenOptions& options) {
     std::erase_if(goldens, [&](const Golden& golden) { return !is_there(golden); });
   }
   for (Golden& golden : goldens) {
-    // What was made before the manifest was written may have been made otherwise.
-    if (!is_there(golden) ||
-        std::filesystem::last_write_time(made_file(golden, places), ignored) < told) {
-      make_or_throw(golden, places);
-    }
+    // A program's picture is the one that was shown, unless the manifest is newer. Ours are made
+    // again, as their files may have changed.
+    const bool is_shown =
+        golden.command.find(kOut) != std::string::npos && is_there(golden) &&
+        std::filesystem::last_write_time(made_file(golden, places), ignored) >= told;
+    if (!is_shown) make_or_throw(golden, places);
     take(golden, options, places);
     std::cout << golden.name << ": accepted" << (golden.hash ? ", " + *golden.hash : "") << '\n';
   }
   if (goldens.empty()) std::cout << "there is nothing to accept\n";
   return kDone;
 }
-
-constexpr std::string_view kOut = "{out}";
 
 // A golden of what is typed: softfocus's own command, or another program's.
 std::string typed_command(std::vector<std::string> words) {
@@ -301,16 +369,19 @@ int add(const GoldenOptions& options) {
   golden.name = options.names[0];
   golden.command = typed_command({options.names.begin() + 1, options.names.end()});
   golden.picture = golden.name + ".png";
-  golden.hash = hash_text(0);
   const std::filesystem::path manifest = manifest_of(options);
-  parse_goldens(with_golden("", golden), "add");  // says what is wrong with the name
-  for (const Golden& other : parse_goldens(manifest_text(options), manifest)) {
+  std::vector<Golden> goldens = parse_goldens(manifest_text(options), manifest);
+  for (const Golden& other : goldens) {
     if (other.name != golden.name) continue;
     throw UsageError("'" + manifest.string() + "' has a golden '" + golden.name +
                      "'; softfocus golden accept takes its new picture");
   }
+  with_golden(manifest_text(options), golden, manifest);  // says what is wrong with the name
   const GoldenPlaces places = places_of(options);
-  make_directory(places.report);
+  goldens.push_back(golden);
+  check_places(goldens, places);
+  make_directory(options.folder);
+  const ReportLock lock{places};
   make_or_throw(golden, places);
   golden.hash = hash_text(hash_image(read_image_file(made_file(golden, places)).image));
   take(golden, options, places);
@@ -328,6 +399,9 @@ constexpr std::array kGoldenActions{GoldenAction{"check", check}, GoldenAction{"
 int run_golden(const GoldenOptions& options) {
   for (const GoldenAction& action : kGoldenActions) {
     if (action.name != options.action) continue;
+    if (action.work != check && options.resumes) {
+      throw UsageError("--resume: only golden check reads it");
+    }
     if (action.work != accept && options.all) {
       throw UsageError("--all: only golden accept reads it");
     }
@@ -361,6 +435,11 @@ Command add_golden_command(CLI::App& program) {
             [options](const std::string& text) {
               options->jobs = parse_whole("--jobs", text, 1, 256, "goldens at a time");
             });
+  add_flag(
+      *parser, "--resume",
+      "check: go on where one was interrupted; files that scenes and commands read must be the "
+      "same",
+      options->resumes);
   add_flag(*parser, "--all", "accept: all pictures that the last check has left", options->all);
   add_flag(*parser, "--json", "check: print JSON", options->json);
   add_flag(*parser, "--quiet", "No line of progress", options->quiet);

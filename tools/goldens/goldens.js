@@ -45,10 +45,6 @@ function wipe(golden, parent) {
   slider.addEventListener("input", () => both.style.setProperty("--at", slider.value + "%"));
 }
 
-function shell_word(text) {
-  return /^[\w@%+=:,./-]+$/.test(text) ? text : "'" + text.replaceAll("'", "'\\''") + "'";
-}
-
 function draw_golden(golden) {
   const article = element("article", "", list, { class: golden.verdict });
   element("h2", golden.name, article, { "data-verdict": golden.verdict });
@@ -71,7 +67,7 @@ function draw_golden(golden) {
   }
   if (golden.verdict === "breaks") return;
   const accept = element("p", "", article);
-  element("code", `softfocus golden accept ${shell_word(results.folder)} ${golden.name}`, accept);
+  element("code", `${results.accept} ${golden.name}`, accept);
   accept.append(" takes the new picture");
 }
 

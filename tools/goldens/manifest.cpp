@@ -5,7 +5,10 @@
 #include <set>
 #include <string_view>
 
+#include "scenes/files/scene_error.h"
 #include "scenes/load/toml_reading.h"
+#include "tools/cli/errors.h"
+#include "tools/pictures/image_file.h"
 
 namespace softfocus {
 namespace {
@@ -13,7 +16,7 @@ namespace {
 constexpr std::string_view kHeading = "[[golden]]";
 
 bool is_file_name(std::string_view text) {
-  return !text.empty() && text.front() != '.' &&
+  return !text.empty() && text.front() != '.' && text.front() != '-' &&
          text.find_first_not_of(
              "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-") == text.npos;
 }
@@ -38,12 +41,39 @@ std::optional<int> optional_whole(Section& section, std::string_view key, int mo
   return read_whole_number(section, key, 0, 0, most);
 }
 
+bool is_same_place(const std::filesystem::path& a, const std::filesystem::path& b) {
+  return a.lexically_normal() == b.lexically_normal();
+}
+
+std::optional<double> decimal(const std::string& text) {
+  try {
+    std::size_t end = 0;
+    const double value = std::stod(text, &end);
+    return end == text.size() ? std::optional{value} : std::nullopt;
+  } catch (const std::exception&) {
+    return {};
+  }
+}
+
 Tolerance read_tolerance(Section& section) {
   Tolerance tolerance;
   tolerance.max_half_ulps = optional_whole(section, "max_ulps", 65535);
   tolerance.max_flip = optional_number(section, "max_flip", {0.0, 1.0});
   tolerance.max_error = optional_number(section, "max_error", {0.0, 1e6});
-  tolerance.max_pixels = optional_number(section, "max_pixels", {0.0, 1e12});
+  const toml::node* pixels = find_key(section, "max_pixels");
+  if (pixels != nullptr && pixels->is_string()) {
+    const std::string text = read_text(section, "max_pixels", "");
+    const std::optional<double> percent =
+        text.ends_with('%') ? decimal(text.substr(0, text.size() - 1)) : std::nullopt;
+    if (!percent || *percent < 0.0 || *percent > 100.0) {
+      fail_at(section, "max_pixels",
+              "is no share; a number of pixels, or \"0.1%\", would be right");
+    }
+    tolerance.max_pixels = percent;
+    tolerance.is_percent = true;
+  } else {
+    tolerance.max_pixels = optional_number(section, "max_pixels", {0.0, 1e12});
+  }
   tolerance.max_difference = optional_number(section, "max_difference", {0.0, 1e6});
   tolerance.search_px = optional_whole(section, "search", 8);
   if ((tolerance.max_difference || tolerance.search_px) && !tolerance.max_pixels) {
@@ -85,7 +115,7 @@ Golden read_golden(Section& section) {
   if (!is_file_name(golden.name)) {
     fail_at(section, "name",
             "is no name for files; letters, digits, '.', '_' and '-' would be right, the first "
-            "no '.'");
+            "a letter, a digit or '_'");
   }
   golden.scene = read_text(section, "scene", "");
   golden.pipeline = read_text(section, "pipeline", "");
@@ -102,6 +132,14 @@ Golden read_golden(Section& section) {
     fail_at(section, "hash", "is no hash; 0x and 16 digits of 0 to 9 and a to f would be right");
   }
   golden.picture = optional_text(section, "picture");
+  if (golden.picture && !format_by_extension(*golden.picture)) {
+    fail_at(
+        section, "picture",
+        "has an ending that is not known; .png, .npy, .exr, .pfm, .hdr or .tiff would be right");
+  }
+  if (golden.picture && is_same_place(*golden.picture, golden.input)) {
+    fail_at(section, "picture", "is the input, too; a file of its own would be right");
+  }
   golden.tolerance = read_tolerance(section);
   if (has_limits(golden.tolerance) && !golden.picture) {
     fail_at(section, "picture", "is missing; what the tolerance is of would be right");
@@ -150,6 +188,22 @@ bool has_line_key(std::string_view line, std::string_view key) {
   return without_blanks(line.substr(key.size())).starts_with('=');
 }
 
+// Whether it is the heading of a golden, whatever its blanks.
+bool is_heading(std::string_view line) {
+  std::string letters;
+  for (const char c : line.substr(0, line.find('#'))) {
+    if (c != ' ' && c != '\t' && c != '\r') letters += c;
+  }
+  return letters == kHeading;
+}
+
+// Whether a line gives that name, in quotes of either kind.
+bool gives_name(std::string_view line, const std::string& name) {
+  if (!has_line_key(line, "name")) return false;
+  const std::string_view value = without_blanks(line.substr(line.find('=') + 1));
+  return value.starts_with(toml_text(name)) || value.starts_with("'" + name + "'");
+}
+
 // The lines of a golden's table: from the one after its heading to before the next heading.
 struct TableLines {
   std::size_t begin, end;
@@ -157,14 +211,11 @@ struct TableLines {
 
 std::optional<TableLines> table_of(const std::vector<std::string>& lines, const std::string& name) {
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    if (!without_blanks(lines[i]).starts_with(kHeading)) continue;
+    if (!is_heading(lines[i])) continue;
     std::size_t end = i + 1;
     while (end < lines.size() && !without_blanks(lines[end]).starts_with('[')) ++end;
     for (std::size_t line = i + 1; line < end; ++line) {
-      if (has_line_key(lines[line], "name") &&
-          lines[line].find(toml_text(name)) != std::string::npos) {
-        return TableLines{i + 1, end};
-      }
+      if (gives_name(lines[line], name)) return TableLines{i + 1, end};
     }
   }
   return {};
@@ -196,11 +247,16 @@ std::vector<Golden> parse_goldens(const std::string& text, const std::filesystem
   const toml::table table = parse_toml(text, file.string(), "docs/goldens.md has an example");
   Section top{&table, file.string(), "", {}};
   std::vector<Golden> goldens;
-  std::set<std::string> names;
+  std::set<std::string> names, pictures;
   for (Section& section : read_sections(top, "golden")) {
     goldens.push_back(read_golden(section));
     if (!names.insert(goldens.back().name).second) {
       fail_at(section, "name", "is another golden's too; a name of its own would be right");
+    }
+    const std::optional<std::string>& picture = goldens.back().picture;
+    if (picture &&
+        !pictures.insert(std::filesystem::path{*picture}.lexically_normal().string()).second) {
+      fail_at(section, "picture", "is another golden's too; a file of its own would be right");
     }
   }
   finish_section(top);
@@ -214,7 +270,8 @@ std::string maker_of(const Golden& golden) {
   return golden.command;
 }
 
-std::string with_golden(const std::string& text, const Golden& golden) {
+std::string with_golden(const std::string& text, const Golden& golden,
+                        const std::filesystem::path& file) {
   std::vector<std::string> lines = lines_of(text);
   std::optional<TableLines> table = table_of(lines, golden.name);
   if (!table) {
@@ -238,6 +295,28 @@ std::string with_golden(const std::string& text, const Golden& golden) {
   if (golden.picture) set_key(lines, *table, "picture", toml_text(*golden.picture));
   std::string result;
   for (const std::string& line : lines) result += line + "\n";
+  // A text over several lines, say, may look like keys.
+  std::vector<Golden> wanted = parse_goldens(text, file);
+  const auto place = std::find_if(wanted.begin(), wanted.end(),
+                                  [&](const Golden& other) { return other.name == golden.name; });
+  const bool is_new = place == wanted.end();
+  if (is_new) {
+    wanted.push_back(golden);
+  } else {
+    *place = golden;
+  }
+  bool is_right = false;
+  try {
+    is_right = parse_goldens(result, file) == wanted;
+  } catch (const SceneError&) {
+    if (is_new) throw;  // it says what is wrong with what is added
+  }
+  if (!is_right) {
+    throw UsageError(
+        "'" + file.string() + "': golden '" + golden.name +
+        "' cannot be changed there line by line" +
+        (golden.hash ? "; write hash = " + toml_text(*golden.hash) + " yourself" : ""));
+  }
   return result;
 }
 

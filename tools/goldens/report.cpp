@@ -5,10 +5,6 @@
 #include <cstdio>
 #include <string_view>
 
-#include "dof/measure/heat_map.h"
-#include "dof/measure/measures.h"
-#include "tools/files/base64.h"
-#include "tools/pictures/image_file.h"
 #include "tools/report/report.h"
 
 namespace softfocus {
@@ -25,21 +21,6 @@ std::string_view name_of(Verdict verdict) { return kVerdicts[static_cast<std::si
 std::int64_t count_of(const GoldensChecked& checked, Verdict verdict) {
   return std::count_if(checked.results.begin(), checked.results.end(),
                        [&](const GoldenResult& result) { return result.verdict == verdict; });
-}
-
-std::string png_of(const Image& image) { return base64(encode(image, FileFormat::png)); }
-
-void add_pictures(const GoldenResult& result, Json& json) {
-  if (result.got) json["got"] = png_of(*result.got);
-  if (result.expected) json["expected"] = png_of(*result.expected);
-  if (!result.got || !result.expected || result.got->width != result.expected->width ||
-      result.got->height != result.expected->height) {
-    return;
-  }
-  ThreadPool pool{1};
-  const MeasuredPictures measured = measure_pictures(
-      *result.expected, as_file_has_it(*result.got, FileFormat::png), nullptr, {}, pool);
-  json["difference"] = png_of(heat_picture(measured.flip));
 }
 
 std::string in_xml(std::string_view text) {
@@ -69,7 +50,10 @@ Json goldens_json(const GoldensChecked& checked, bool with_pictures) {
   for (std::size_t i = 0; i < kVerdicts.size(); ++i) {
     json[kVerdicts[i]] = count_of(checked, static_cast<Verdict>(i));
   }
+  json["accept"] = checked.accept;
   json["goldens"] = Json::array();
+  constexpr int kMostShown = 200;  // a browser has to hold them
+  int shown = 0;
   for (std::size_t i = 0; i < checked.goldens.size(); ++i) {
     const Golden& golden = checked.goldens[i];
     const GoldenResult& result = checked.results[i];
@@ -83,7 +67,12 @@ Json goldens_json(const GoldensChecked& checked, bool with_pictures) {
     if (golden.hash) one["expected_hash"] = *golden.hash;
     one["was"] = Json::array();
     for (const std::string& hash : golden.was) one["was"].push_back(hash);
-    if (with_pictures) add_pictures(result, one);
+    if (with_pictures && result.verdict != Verdict::passes && ++shown <= kMostShown) {
+      const ShownPictures& pictures = result.shown;
+      if (!pictures.got.empty()) one["got"] = pictures.got;
+      if (!pictures.expected.empty()) one["expected"] = pictures.expected;
+      if (!pictures.difference.empty()) one["difference"] = pictures.difference;
+    }
     json["goldens"].push_back(std::move(one));
   }
   return json;

@@ -11,13 +11,15 @@ namespace softfocus {
 
 struct GoldensChecked {
   std::string folder;  ///< as the user named it
+  std::string accept;  ///< the command that takes new pictures, but for their names
   std::vector<Golden> goldens;
   std::vector<GoldenResult> results;  ///< of each
   double seconds = 0.0;
 };
 
-/// folder, passes, fails, new, breaks (counts), seconds, goldens [{name, made_by, verdict, why,
-/// hash, expected_hash, was, ms}]; for the page also got, expected, difference (PNG in base64).
+/// folder, accept, passes, fails, new, breaks (counts), seconds, goldens [{name, made_by, verdict,
+/// why, hash, expected_hash, was, ms}]; for the page also got, expected, difference (PNG in base64)
+/// of the first 200 that do not pass.
 Json goldens_json(const GoldensChecked& checked, bool with_pictures);
 
 /// One page that needs no other file.

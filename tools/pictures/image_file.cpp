@@ -195,6 +195,13 @@ Picture decode_picture(std::span<const std::byte> bytes, const std::filesystem::
   return decode_other(bytes, file);
 }
 
+void clear_alpha(Image& image) {
+  for (int y = 0; y < image.height; ++y) {
+    const auto values = row<std::uint16_t>(image, y);
+    for (std::size_t i = 3; i < values.size(); i += 4) values[i] = 0;
+  }
+}
+
 Picture read_image_file(const std::filesystem::path& file) {
   return decode_picture(read_picture_bytes(file), file);
 }

@@ -59,6 +59,9 @@ struct Picture {
   std::size_t cut = 0;     ///< values that even so are cut to the largest half
 };
 
+/// As of a file without alpha.
+void clear_alpha(Image& image);
+
 /// Colours beyond 65504, the largest half, are divided by a power of two before they become halves
 /// and multiplied again when they are written. That keeps all bits of those from 2^(power - 14) on;
 /// darker ones are known to 2^(power - 25), which with the largest power is 3e-5.

@@ -26,7 +26,9 @@ EmbreeDifferences differences(const std::string& name, int width, int height) {
   Image picture = make_image(Format::rgba16f, width, height);
   draw_scene(prepared, camera, 5.0, picture, pool);
   const SceneShadows& shadows = *prepared.shadows;
-  return embree_differences(shadows.facets, shadows.placed, shadows.seen[0],
+  std::vector<ShadowLight> lights;
+  for (const Light& light : scene.lights) lights.push_back(shadow_light(light));
+  return embree_differences(shadows.facets, lights, shadows.seen[0],
                             {multiply(camera.eye_to_clip, camera.world_to_eye), width, height, {}},
                             camera.eye, pool);
 }

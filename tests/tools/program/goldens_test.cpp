@@ -50,7 +50,7 @@ TEST_CASE("golden: what stays passes; what changes fails, is shown, and can be a
   const ProgramRun same = golden("check", folder);
   CHECK(same.status == 0);
   CHECK(contains(same.out, "1 of 1 goldens pass"));
-  CHECK(!is_there(folder + "/report/small.npy"));
+  CHECK(!is_there(folder + "/report/made/small.npy"));
 
   replace_in(manifest, "48x32", "48x32 --f-number 1");
   const ProgramRun changed = golden("check", folder);
@@ -105,11 +105,12 @@ TEST_CASE("golden: scenes, shaders and other programs make pictures, beside the 
              "void main() { colour = vec4(texture(picture, uv).rgb * 0.5, 1.0); }\n");
   REQUIRE(run_program({"render", "figures", "--size", "24x16", "-o", folder + "/in.png"}).status ==
           0);
+  std::filesystem::copy_file(folder + "/in.png", folder + "/copy.png");
   write_file(folder + "/goldens.toml",
              "[[golden]]\nname = \"tint\"\nshader = \"tint.frag\"\ninput = \"in.png\"\n"
              "[[golden]]\nname = \"scene\"\nscene = \"lattice\"\noptions = \"--size 24x16\"\n"
              "picture = \"scene.exr.png\"\n"
-             "[[golden]]\nname = \"copy\"\ncommand = \"cp in.png {out}\"\npicture = \"in.png\"\n"
+             "[[golden]]\nname = \"copy\"\ncommand = \"cp in.png {out}\"\npicture = \"copy.png\"\n"
              "[[golden]]\nname = \"none\"\ncommand = \"true {out}\"\n"
              "[[golden]]\nname = \"bad\"\ncommand = \"echo it is bad >&2; exit 3 {out}\"\n");
   const ProgramRun run = golden("check", folder);
@@ -130,21 +131,28 @@ TEST_CASE("golden: a check that was interrupted goes on where it was") {
   const TemporaryDirectory directory;
   const std::string folder = goldens_in(directory), manifest = folder + "/goldens.toml";
   const std::string unfinished = folder + "/report/unfinished.jsonl";
+  std::filesystem::copy_file(folder + "/small.png", folder + "/last.png");
   // The first counts how often it is made, the second ends the program.
   write_file(manifest,
              "[[golden]]\nname = \"counted\"\npicture = \"small.png\"\n"
              "command = \"echo made >> count; cp small.png {out}\"\n"
-             "[[golden]]\nname = \"last\"\npicture = \"small.png\"\n"
-             "command = \"kill -9 $PPID; cp small.png {out}\"\n");
+             "[[golden]]\nname = \"last\"\npicture = \"last.png\"\n"
+             "command = \"test -e go || kill -9 $PPID; cp small.png {out}\"\n");
   CHECK(golden("check", folder, {"--jobs", "1"}).status != 0);
   CHECK(is_there(unfinished));
   write_file(unfinished, read_file(unfinished) + "{\"key");  // and a line that it was writing
-  replace_in(manifest, "kill -9 $PPID; ", "");
-  CHECK(golden("check", folder, {"--jobs", "1"}).status == 0);
+  write_file(folder + "/go", "");
+  CHECK(golden("check", folder, {"--jobs", "1", "--resume"}).status == 0);
   CHECK(read_file(folder + "/count") == "made\n");
   CHECK(!is_there(unfinished));
-  CHECK(golden("check", folder).status == 0);
+  std::filesystem::remove(folder + "/go");
+  std::filesystem::remove(folder + "/count");
+  CHECK(golden("check", folder, {"--jobs", "1"}).status != 0);
+  replace_in(manifest, "test -e go || kill -9 $PPID; ", "");
+  // The manifest is another one now: all are made again.
+  CHECK(golden("check", folder, {"--resume"}).status == 0);
   CHECK(read_file(folder + "/count") == "made\nmade\n");
+  CHECK(!is_there(unfinished));
 }
 
 TEST_CASE("golden: what cannot be is refused, and nothing is left behind") {
@@ -166,4 +174,47 @@ TEST_CASE("golden: what cannot be is refused, and nothing is left behind") {
   CHECK(bad.status == 2);
   CHECK(contains(bad.err, "golden 'bad'"));
   CHECK(!contains(read_file(folder + "/goldens.toml"), "bad"));
+}
+
+TEST_CASE("golden: opacity and all bits of a program's picture count, and are kept") {
+  const TemporaryDirectory directory;
+  const std::string folder = directory.file("g");
+  std::filesystem::create_directory(folder);
+  REQUIRE(
+      run_program({"render", "figures", "--size", "24x16", "-o", directory.file("a.npy")}).status ==
+      0);
+  const Image image = read_image_file(directory.file("a.npy")).image;
+  const auto write_png = [&](const std::string& name, float opacity) {
+    const std::vector<float> alpha(24 * 16, opacity);
+    const Bytes bytes = encode_png(image, alpha);
+    write_file(folder + "/" + name, std::span<const std::byte>{bytes});
+  };
+  write_png("now.png", 1.0f);
+  write_png("right.png", 1.0f);
+  write_file(folder + "/goldens.toml",
+             "[[golden]]\nname = \"v\"\ncommand = \"cp now.png {out}\"\npicture = "
+             "\"right.png\"\n");
+  CHECK(golden("check", folder).status == 0);
+  write_png("now.png", 0.5f);
+  CHECK(golden("check", folder).status == 1);
+  CHECK(golden("accept", folder, {"v"}).status == 0);
+  CHECK(read_file(folder + "/right.png") == read_file(folder + "/now.png"));
+  CHECK(golden("check", folder).status == 0);
+  // What fails is not taken.
+  replace_in(folder + "/goldens.toml", "{out}", "{out}; exit 3");
+  CHECK(golden("check", folder).status == 1);
+  CHECK(contains(golden("accept", folder, {"--all"}).out, "nothing to accept"));
+  CHECK(golden("accept", folder, {"v"}).status == 2);
+}
+
+TEST_CASE("golden: nothing of the user's lies where checks write") {
+  const TemporaryDirectory directory;
+  const std::string folder = goldens_in(directory);
+  check_refused(directory, {"golden", "check", folder, "-o", folder + "/."}, 2,
+                {"-o", "own folder"});
+  replace_in(folder + "/goldens.toml", "\"small.png\"", "\"report/made/small.png\"");
+  std::filesystem::create_directories(folder + "/report/made");
+  std::filesystem::copy_file(folder + "/small.png", folder + "/report/made/small.png");
+  check_refused(directory, {"golden", "check", folder}, 2, {"'small'", "report", "elsewhere"});
+  CHECK(is_there(folder + "/report/made/small.png"));
 }
