@@ -148,7 +148,8 @@ void judge_by_picture(const Golden& golden, const GoldenPlaces& places, Picture 
                 "; FLIP " + short_number(flip);
 }
 
-void judge(const Golden& golden, const GoldenPlaces& places, Picture made, GoldenResult& result) {
+void judge(const Golden& golden, const GoldenPlaces& places, const Picture& made,
+           GoldenResult& result) {
   result.hash = hash_text(hash_image(made.image));
   if (golden.hash && *golden.hash == result.hash) {
     result.verdict = Verdict::passes;

@@ -46,9 +46,9 @@ std::filesystem::path manifest_of(const GoldenOptions& options) {
 }
 
 GoldenPlaces places_of(const GoldenOptions& options) {
-  const GoldenPlaces places{options.folder, options.report.empty()
-                                                ? std::filesystem::path{options.folder} / "report"
-                                                : options.report};
+  GoldenPlaces places{options.folder, options.report.empty()
+                                          ? std::filesystem::path{options.folder} / "report"
+                                          : options.report};
   if (is_same_file(places.report, places.manifest)) {
     throw UsageError("-o '" + places.report.string() +
                      "' is the goldens' own folder; another would be right");
