@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstdint>
 #include <fstream>
 #include <iostream>
 #include <map>
@@ -134,7 +135,7 @@ void add_state(Hash& hash, const std::filesystem::path& file) {
   add_text(hash, file.string());
   add_number(hash, static_cast<double>(std::filesystem::file_size(file, error)));
   const auto written = std::filesystem::last_write_time(file, error).time_since_epoch();
-  add_text(hash, std::to_string(written.count()));
+  add_text(hash, std::to_string(static_cast<std::int64_t>(written.count())));
 }
 
 // Of all that is known to make a golden what it is. What a scene or a command reads is not.
