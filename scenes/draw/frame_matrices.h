@@ -20,6 +20,33 @@ struct CameraMatrices {
   bool operator==(const CameraMatrices&) const = default;
 };
 
+/// In the world, where the eye's x, y or z points.
+inline glm::dvec3 eye_axis(const CameraMatrices& camera, int i) {
+  return {camera.world_to_eye[0][i], camera.world_to_eye[1][i], camera.world_to_eye[2][i]};
+}
+
+/// The rays from the eye through the centres of a picture's pixels, each as far as a metre along
+/// the axis.
+struct PixelRays {
+  glm::dvec3 right, up, back;
+  glm::dmat4 to_clip;
+  int width, height;
+
+  glm::dvec3 at(int x, int y) const {
+    const double aside = ((x + 0.5) * 2.0 / width - 1.0 + to_clip[2][0]) / to_clip[0][0];
+    const double above = ((y + 0.5) * 2.0 / height - 1.0 + to_clip[2][1]) / to_clip[1][1];
+    return (right * aside + up * above) - back;
+  }
+};
+inline PixelRays pixel_rays(const CameraMatrices& camera, int width, int height) {
+  return {eye_axis(camera, 0),
+          eye_axis(camera, 1),
+          eye_axis(camera, 2),
+          camera.eye_to_clip,
+          width,
+          height};
+}
+
 /// Whether it stands elsewhere than at its target, and does not look along `up`: keys can lead
 /// there between them.
 bool can_look(const Camera& camera, double frame);

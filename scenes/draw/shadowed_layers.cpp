@@ -34,7 +34,7 @@ bool is_projected(const SceneShadows& shadows, ShadowKind kind) {
 // Of one light, that has come or has moved.
 void place_light(SceneShadows& shadows, std::size_t i, ShadowKind kind, const ShadowLight& light,
                  std::span<const std::uint8_t> wanted, ThreadPool& pool) {
-  // `placed` comes last: what is not made whole, for want of memory, is made again.
+  // Set last: if memory runs out in between, the next frame makes all of it again.
   shadows.placed[i].reset();
   for (std::vector<KeptBits>& of_layer : shadows.kept_bits) of_layer[i] = {};
   shadows.projected[i] = is_projected(shadows, kind)

@@ -127,7 +127,7 @@ void print_codes(const CodeDifference& codes) {
                        std::to_string(codes.max_x) + "," + std::to_string(codes.max_y));
   }
   print_line("YIQ", std::to_string(codes.beyond) + " pixels beyond the threshold, and " +
-                        std::to_string(codes.anti_aliased) + " of smooth edges");
+                        std::to_string(codes.anti_aliased) + " that are anti-aliased");
 }
 
 void print_histogram(const Difference& difference) {

@@ -1,6 +1,5 @@
 #include "tools/goldens/check.h"
 
-#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <system_error>
@@ -10,28 +9,19 @@
 #include "dof/measure/heat_map.h"
 #include "dof/measure/measures.h"
 #include "raster/images/image.h"
-#include "raster/numbers/half.h"
+#include "scenes/files/scene_error.h"
 #include "tools/cli/errors.h"
 #include "tools/cli/option_values.h"
 #include "tools/cli/platform.h"
 #include "tools/files/base64.h"
 #include "tools/files/hash_text.h"
-#include "tools/files/whole_file.h"
+#include "tools/report/report.h"
 
 namespace softfocus {
 namespace {
 
-std::string in_quotes(const std::string& text) {
-  std::string result = "'";
-  for (const char c : text) {
-    if (c == '\'') {
-      result += "'\\''";
-    } else {
-      result += c;
-    }
-  }
-  return result + "'";
-}
+// As one word of a shell's.
+std::string in_quotes(const std::string& text) { return command_text({text}); }
 
 std::string own_program_quoted() {
   const std::optional<std::filesystem::path> own = own_program();
@@ -65,10 +55,6 @@ std::string last_words(const std::filesystem::path& log) {
   std::string last;
   for (std::string line; std::getline(file, line);) {
     if (line.find_first_not_of(" \t\r") != line.npos) last = line;
-  }
-  // Whatever a program says: letters that a page and XML can hold.
-  for (char& c : last) {
-    if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) > 0x7e) c = '?';
   }
   constexpr std::size_t kMost = 400;
   return last.size() > kMost ? last.substr(0, kMost) + " ..." : last;
@@ -178,18 +164,14 @@ std::string shell_name(const std::filesystem::path& file, const GoldenPlaces& pl
   const std::filesystem::path from =
       std::filesystem::absolute(places.manifest / "").lexically_normal();
   const std::string near = whole.lexically_relative(from).string();
-  const std::string name = near.empty() || near.starts_with("..") ? whole.string() : near;
-  const bool is_plain =
-      name.find_first_not_of(
-          "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-/") == name.npos;
-  return is_plain ? name : in_quotes(name);
+  return in_quotes(near.empty() || near.starts_with("..") ? whole.string() : near);
 }
 
 }  // namespace
 
 std::filesystem::path made_file(const Golden& golden, const GoldenPlaces& places) {
   std::string ending = ".npy";
-  if (golden.command.find("{out}") != std::string::npos) {
+  if (has_out(golden)) {
     ending = golden.picture ? std::filesystem::path{*golden.picture}.extension().string() : ".png";
   }
   return places.made() / (golden.name + ending);
@@ -219,8 +201,7 @@ std::string shell_command(const Golden& golden, const GoldenPlaces& places) {
   if (command.starts_with(kOwn)) {
     command = own_program_quoted() + " " + with_one_thread(command.substr(kOwn.size()));
   }
-  if (command.find("{out}") == std::string::npos) return command + " -o " + out;
-  return replaced(command, "{out}", out);
+  return has_out(golden) ? replaced(command, kOut, out) : command + " -o " + out;
 }
 
 std::optional<std::string> make_golden(const Golden& golden, const GoldenPlaces& places) {
@@ -240,9 +221,10 @@ std::optional<std::string> make_golden(const Golden& golden, const GoldenPlaces&
   }
   remove_made(golden, places);
   const std::string said = words.empty() ? "" : ": " + words;
-  if (!status) return "its command was ended or could not be run" + said;
-  if (*status != 0) return "its command ends with status " + std::to_string(*status) + said;
-  return "its command writes no file at {out}" + said;
+  const std::string command = "its command, run in '" + places.manifest.string() + "', ";
+  if (!status) return command + "was ended or could not be run" + said;
+  if (*status != 0) return command + "ends with status " + std::to_string(*status) + said;
+  return command + "writes no file at " + std::string{kOut} + said;
 }
 
 GoldenResult check_golden(const Golden& golden, const GoldenPlaces& places) {
@@ -258,6 +240,7 @@ GoldenResult check_golden(const Golden& golden, const GoldenPlaces& places) {
     result.verdict = Verdict::breaks;
     result.why = error.what();
   }
+  result.why = printable(result.why);
   result.ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   if (result.verdict == Verdict::passes) remove_made(golden, places);

@@ -28,8 +28,6 @@
 namespace softfocus {
 namespace {
 
-constexpr std::string_view kOut = "{out}";
-
 struct GoldenOptions {
   std::string action;
   std::string folder;
@@ -106,8 +104,12 @@ std::string manifest_text(const GoldenOptions& options) {
   return read_file_text(manifest_of(options), kMostManifestBytes);
 }
 
+std::vector<Golden> all_goldens(const GoldenOptions& options) {
+  return parse_goldens(manifest_text(options), manifest_of(options));
+}
+
 std::vector<Golden> wanted_goldens(const GoldenOptions& options) {
-  std::vector<Golden> all = parse_goldens(manifest_text(options), manifest_of(options));
+  std::vector<Golden> all = all_goldens(options);
   if (options.names.empty()) return all;
   std::vector<Golden> wanted;
   for (const std::string& name : options.names) {
@@ -241,12 +243,12 @@ int check(const GoldenOptions& options) {
     throw UsageError("'" + manifest_of(options).string() +
                      "' has no [[golden]]; softfocus golden add makes one");
   }
-  check_places(parse_goldens(manifest_text(options), manifest_of(options)), places);
+  const std::vector<Golden> all = all_goldens(options);
+  check_places(all, places);
   const ReportLock lock{places};
   std::error_code ignored;
   // What an earlier check has left is no longer what is shown.
-  std::filesystem::remove_all(places.made(), ignored);
-  make_directory(places.made());
+  for (const Golden& golden : all) remove_made(golden, places);
   for (const char* file : {"index.html", "results.json", "junit.xml"}) {
     check_writable(places.report / file);
   }
@@ -313,7 +315,7 @@ int accept(const GoldenOptions& options) {
   }
   const GoldenPlaces places = places_of(options);
   std::vector<Golden> goldens = wanted_goldens(options);
-  check_places(parse_goldens(manifest_text(options), manifest_of(options)), places);
+  check_places(all_goldens(options), places);
   const ReportLock lock{places};
   std::error_code ignored;
   const auto told = std::filesystem::last_write_time(manifest_of(options), ignored);
@@ -327,7 +329,7 @@ int accept(const GoldenOptions& options) {
     // A program's picture is the one that was shown, unless the manifest is newer. Ours are made
     // again, as their files may have changed.
     const bool is_shown =
-        golden.command.find(kOut) != std::string::npos && is_there(golden) &&
+        has_out(golden) && is_there(golden) &&
         std::filesystem::last_write_time(made_file(golden, places), ignored) >= told;
     if (!is_shown) make_or_throw(golden, places);
     take(golden, options, places);
@@ -371,7 +373,7 @@ int add(const GoldenOptions& options) {
   golden.command = typed_command({options.names.begin() + 1, options.names.end()});
   golden.picture = golden.name + ".png";
   const std::filesystem::path manifest = manifest_of(options);
-  std::vector<Golden> goldens = parse_goldens(manifest_text(options), manifest);
+  std::vector<Golden> goldens = all_goldens(options);
   for (const Golden& other : goldens) {
     if (other.name != golden.name) continue;
     throw UsageError("'" + manifest.string() + "' has a golden '" + golden.name +
@@ -420,8 +422,8 @@ Command add_golden_command(CLI::App& program) {
   const auto options = std::make_shared<GoldenOptions>();
   add_argument(
       *parser, "ACTION",
-      "check: make all, and hold them against what is expected; accept: take new pictures; "
-      "add one",
+      "check: make all, and hold them against what is expected; accept: take new pictures; add: a "
+      "new golden",
       options->action);
   offer(*parser, "ACTION", [] { return names_in(kGoldenActions); });
   add_argument(*parser, "DIR", "The folder of goldens.toml (docs/goldens.md)", options->folder);

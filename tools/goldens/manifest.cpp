@@ -5,6 +5,7 @@
 #include <set>
 #include <string_view>
 
+#include "scenes/files/decimal.h"
 #include "scenes/files/scene_error.h"
 #include "scenes/load/toml_reading.h"
 #include "tools/cli/errors.h"
@@ -45,16 +46,6 @@ bool is_same_place(const std::filesystem::path& a, const std::filesystem::path& 
   return a.lexically_normal() == b.lexically_normal();
 }
 
-std::optional<double> decimal(const std::string& text) {
-  try {
-    std::size_t end = 0;
-    const double value = std::stod(text, &end);
-    return end == text.size() ? std::optional{value} : std::nullopt;
-  } catch (const std::exception&) {
-    return {};
-  }
-}
-
 Tolerance read_tolerance(Section& section) {
   Tolerance tolerance;
   tolerance.max_half_ulps = optional_whole(section, "max_ulps", 65535);
@@ -64,8 +55,8 @@ Tolerance read_tolerance(Section& section) {
   if (pixels != nullptr && pixels->is_string()) {
     const std::string text = read_text(section, "max_pixels", "");
     const std::optional<double> percent =
-        text.ends_with('%') ? decimal(text.substr(0, text.size() - 1)) : std::nullopt;
-    if (!percent || *percent < 0.0 || *percent > 100.0) {
+        text.ends_with('%') ? decimal_to_double(text.substr(0, text.size() - 1)) : std::nullopt;
+    if (!percent || !(*percent >= 0.0 && *percent <= 100.0)) {
       fail_at(section, "max_pixels",
               "is no share; a number of pixels, or \"0.1%\", would be right");
     }
@@ -103,8 +94,7 @@ void check_maker(const Section& section, const Golden& golden) {
             "is of scenes, pipelines and shaders; words in the command would be "
             "right");
   }
-  if (golden.command.find("{out}") == std::string::npos &&
-      !golden.command.starts_with("softfocus ")) {
+  if (!has_out(golden) && !golden.command.starts_with("softfocus ")) {
     fail_at(section, "command", "has no {out}, the file that it is to write; one would be right");
   }
 }

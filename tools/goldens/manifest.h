@@ -19,6 +19,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tools/compare/options.h"
@@ -41,6 +42,10 @@ struct Golden {
 
 /// Throws SceneError, which names file and line.
 std::vector<Golden> parse_goldens(const std::string& text, const std::filesystem::path& file);
+
+/// In a command, the file that it is to write.
+inline constexpr std::string_view kOut = "{out}";
+inline bool has_out(const Golden& golden) { return golden.command.find(kOut) != std::string::npos; }
 
 /// What the goldens' maker is: "scene portrait", a command.
 std::string maker_of(const Golden& golden);

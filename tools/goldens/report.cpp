@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <string_view>
 
+#include "scenes/files/scene_error.h"
 #include "tools/report/report.h"
 
 namespace softfocus {
@@ -25,13 +26,13 @@ std::int64_t count_of(const GoldensChecked& checked, Verdict verdict) {
 
 std::string in_xml(std::string_view text) {
   std::string result;
-  for (const char c : text) {
+  for (const char c : printable(text)) {
     switch (c) {
       case '&': result += "&amp;"; break;
       case '<': result += "&lt;"; break;
       case '>': result += "&gt;"; break;
       case '"': result += "&quot;"; break;
-      default: result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+      default: result += c;
     }
   }
   return result;

@@ -68,24 +68,16 @@ void draw_lit_pixels(const ReliefTexture& relief, const WarpedPlanes& warped,
   material.diffuse = glm::vec3{1.0f};
   material.specular = kind.specular;
   material.shininess = kind.shininess;
-  const auto axis = [&](int i) {
-    return glm::dvec3{camera.world_to_eye[0][i], camera.world_to_eye[1][i],
-                      camera.world_to_eye[2][i]};
-  };
-  const glm::dvec3 right = axis(0), up = axis(1), back = axis(2);
+  const PixelRays rays = pixel_rays(camera, picture.width, picture.height);
   const glm::vec3 eye{camera.eye};
   pool.for_each(mapping.area.y_end - mapping.area.y_begin, [&](int line) {
     const int y = mapping.area.y_begin + line;
-    const double above = ((y + 0.5) * 2.0 / picture.height - 1.0 + camera.eye_to_clip[2][1]) /
-                         camera.eye_to_clip[1][1];
     for (int x = mapping.area.x_begin; x < mapping.area.x_end; ++x) {
       const glm::vec4 unlit = load_texel<Format::rgba16f>(lights.unlit, x, y);
       if (!(unlit.w < load_texel<Format::rgba16f>(picture, x, y).w)) continue;
       glm::vec3 colour{unlit};
       if (kind.lit) {
-        const double aside = ((x + 0.5) * 2.0 / picture.width - 1.0 + camera.eye_to_clip[2][0]) /
-                             camera.eye_to_clip[0][0];
-        const glm::vec3 ray{(right * aside + up * above) - back};
+        const glm::vec3 ray{rays.at(x, y)};
         const glm::vec3 point = eye + ray * unlit.w;
         const LitColour lit =
             light_point(material, lights.lights->ambient_light, lights.lights->lights, point,

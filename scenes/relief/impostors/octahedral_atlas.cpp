@@ -127,10 +127,7 @@ OctahedralBlend octahedral_blend(const OctahedralAtlas& atlas, glm::dvec3 direct
 OctahedralView octahedral_view(const ReliefTexture& picture, double radius_m,
                                const CameraMatrices& camera, int width, int height) {
   const ReliefCamera& plane = picture.camera;
-  const auto axis = [&](int i) {
-    return glm::dvec3{camera.world_to_eye[0][i], camera.world_to_eye[1][i],
-                      camera.world_to_eye[2][i]};
-  };
+  const auto axis = [&](int i) { return eye_axis(camera, i); };
   // The ray through a pixel's centre goes as far along the axis as a metre.
   const glm::dvec3 step_x = axis(0) * (2.0 / (width * camera.eye_to_clip[0][0]));
   const glm::dvec3 step_y = axis(1) * (2.0 / (height * camera.eye_to_clip[1][1]));

@@ -252,24 +252,16 @@ bool has_point(const BoxFace& face, glm::dvec3 point, double away_m) {
 
 std::vector<FacePoint> unseen_pixels(const ReliefBox& box, const CameraMatrices& camera,
                                      const Image& drawn, float far_m, ThreadPool& pool) {
-  const auto axis = [&](int i) {
-    return glm::dvec3{camera.world_to_eye[0][i], camera.world_to_eye[1][i],
-                      camera.world_to_eye[2][i]};
-  };
-  const glm::dvec3 right = axis(0), up = axis(1), back = axis(2);
+  const PixelRays rays = pixel_rays(camera, drawn.width, drawn.height);
   const unsigned seen = faces_seen(box, camera.eye);
   std::vector<FacePoint> unseen(static_cast<std::size_t>(drawn.width) *
                                 static_cast<std::size_t>(drawn.height));
   pool.for_each(drawn.height, [&](int y) {
-    const double above = ((y + 0.5) * 2.0 / drawn.height - 1.0 + camera.eye_to_clip[2][1]) /
-                         camera.eye_to_clip[1][1];
     for (int x = 0; x < drawn.width; ++x) {
       const float depth = load_texel<Format::rgba16f>(drawn, x, y).w;
       if (!(depth < far_m)) continue;
-      const double aside = ((x + 0.5) * 2.0 / drawn.width - 1.0 + camera.eye_to_clip[2][0]) /
-                           camera.eye_to_clip[0][0];
       const auto far = static_cast<double>(depth);
-      const glm::dvec3 point = camera.eye + ((right * aside + up * above) - back) * far;
+      const glm::dvec3 point = camera.eye + rays.at(x, y) * far;
       FacePoint had = FacePoint::by_none;
       for (std::size_t i = 0; i < kBoxFaces && had != FacePoint::by_seen; ++i) {
         if (!box.faces[i] || !has_point(*box.faces[i], point, far * 0x1p-11)) continue;

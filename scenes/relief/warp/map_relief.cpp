@@ -142,10 +142,7 @@ PlaneMapping plane_mapping(const ReliefTexture& relief, const CameraMatrices& ca
                            const PlaneRectangle& place, int width, int height) {
   const ReliefCamera& plane = relief.camera;
   const PreWarp warp = pre_warp(relief, camera.eye);
-  const auto axis = [&](int i) {
-    return glm::dvec3{camera.world_to_eye[0][i], camera.world_to_eye[1][i],
-                      camera.world_to_eye[2][i]};
-  };
+  const auto axis = [&](int i) { return eye_axis(camera, i); };
   // The ray through a pixel's centre goes as far along the axis as a metre.
   const glm::dvec3 step_x = axis(0) * (2.0 / (width * camera.eye_to_clip[0][0]));
   const glm::dvec3 step_y = axis(1) * (2.0 / (height * camera.eye_to_clip[1][1]));

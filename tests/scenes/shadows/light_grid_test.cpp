@@ -97,6 +97,25 @@ TEST_CASE("a search of few casters and one of most name what sorting all cells n
   }
 }
 
+TEST_CASE("casters that each cross all of the light's view do not fill the memory") {
+  Random random{7};
+  std::vector<Facet> corners;
+  for (int i = 0; i < 9000; ++i) {
+    const double x = random.between(-1.0, 1.0), z = random.between(-1.0, 1.0);
+    add_triangle(corners, {x, 1, -1}, {x + 0.001, 1, 1}, {x, 1, 1});
+    add_triangle(corners, {-1, 1.1, z}, {1, 1.1, z + 0.001}, {1, 1.1, z});
+  }
+  const Facets facets = make_facets(std::move(corners));
+  ThreadPool pool{3};
+  const LightGrid grid = make_light_grid(facets, {{0, 1, 0}, 0.0}, &pool);
+  CHECK(grid.cells > 1);
+  CHECK(grid.casters.size() <= 33 * facets.facets.size());
+  const LightGrid by_one = make_light_grid(facets, {{0, 1, 0}, 0.0});
+  CHECK(by_one.cells == grid.cells);
+  CHECK(by_one.begins == grid.begins);
+  CHECK(by_one.casters == grid.casters);
+}
+
 TEST_CASE("casters that meet at the borders of cells are named on both sides of them") {
   // The corners of these squares are the corners of cells.
   std::vector<Facet> corners;

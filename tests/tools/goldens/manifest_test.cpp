@@ -81,7 +81,10 @@ TEST_CASE("goldens: what is wrong with a manifest is said with its line and what
   says("scene = \"x\"\nmax_flip = 2", "max_flip");
   says("scene = \"x\"\npicture = \"a\"", "ending");
   says("shader = \"x\"\ninput = \"y/../a.png\"\npicture = \"a.png\"", "input");
-  says("scene = \"x\"\npicture = \"a.png\"\nmax_pixels = \"1\"", "max_pixels");
+  for (const char* share : {"1", "nan%", "101%", "-1%", "%"}) {
+    says(std::string{"scene = \"x\"\npicture = \"a.png\"\nmax_pixels = \""} + share + "\"",
+         "max_pixels");
+  }
   says(
       "scene = \"x\"\npicture = \"a.png\"\n[[golden]]\nname = \"b\"\nscene = \"y\"\n"
       "picture = \"./a.png\"",

@@ -118,8 +118,9 @@ TEST_CASE("golden: scenes, shaders and other programs make pictures, beside the 
   CHECK(contains(run.out, "NEW tint: "));
   CHECK(contains(run.out, "NEW scene: "));
   CHECK(!contains(run.out, "copy: "));
-  CHECK(contains(run.out, "BREAKS none: its command writes no file at {out}"));
-  CHECK(contains(run.out, "BREAKS bad: its command ends with status 3: it is bad"));
+  CHECK(contains(run.out,
+                 "BREAKS none: its command, run in '" + folder + "', writes no file at {out}"));
+  CHECK(contains(run.out, "', ends with status 3: it is bad"));
   CHECK(contains(run.out, "1 of 5 goldens pass"));
   CHECK(golden("accept", folder, {"--all"}).status == 0);
   CHECK(golden("check", folder, {"tint", "scene", "copy"}).status == 0);
@@ -207,6 +208,18 @@ TEST_CASE("golden: opacity and all bits of a program's picture count, and are ke
   CHECK(golden("accept", folder, {"v"}).status == 2);
 }
 
+TEST_CASE("golden: one command at a time writes into a report") {
+  const TemporaryDirectory directory;
+  const std::string folder = goldens_in(directory);
+  // It checks the folder that it is checked in.
+  write_file(folder + "/goldens.toml",
+             "[[golden]]\nname = \"inner\"\npicture = \"small.png\"\n"
+             "command = \"softfocus golden check . && cp small.png {out}\"\n");
+  const ProgramRun run = golden("check", folder);
+  CHECK(run.status == 1);
+  CHECK(contains(run.out, "another golden command writes there"));
+}
+
 TEST_CASE("golden: nothing of the user's lies where checks write") {
   const TemporaryDirectory directory;
   const std::string folder = goldens_in(directory);
@@ -217,4 +230,11 @@ TEST_CASE("golden: nothing of the user's lies where checks write") {
   std::filesystem::copy_file(folder + "/small.png", folder + "/report/made/small.png");
   check_refused(directory, {"golden", "check", folder}, 2, {"'small'", "report", "elsewhere"});
   CHECK(is_there(folder + "/report/made/small.png"));
+  // A folder that is no check's own keeps what is in it.
+  replace_in(folder + "/goldens.toml", "report/made/", "");
+  const std::string mine = directory.file("mine");
+  std::filesystem::create_directories(mine + "/made");
+  write_file(mine + "/made/treasure", "x");
+  CHECK(golden("check", folder, {"-o", mine}).status == 0);
+  CHECK(is_there(mine + "/made/treasure"));
 }
