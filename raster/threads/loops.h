@@ -1,6 +1,8 @@
 #pragma once
 // Loops over rows and tiles, and memory that their tasks use one after the other.
 
+#include <algorithm>
+#include <cstddef>
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -46,6 +48,19 @@ template <class Memory, class Body>
 void for_each_with(ThreadPool& pool, int count, const Body& body) {
   ScratchShelf<Memory> shelf;
   for_each_with(shelf, pool, count, body);
+}
+
+/// Runs body(begin, end) for parts, `size` each, of what is numbered from 0 to count - 1; without a
+/// pool one after the other.
+template <class Body>
+void for_each_part(ThreadPool* pool, std::size_t count, std::size_t size, const Body& body) {
+  const auto run = [&](std::size_t begin) { body(begin, std::min(begin + size, count)); };
+  if (pool != nullptr) {
+    pool->for_each(static_cast<int>((count + size - 1) / size),
+                   [&](int part) { run(static_cast<std::size_t>(part) * size); });
+  } else {
+    for (std::size_t begin = 0; begin < count; begin += size) run(begin);
+  }
 }
 
 /// Runs body(first, end) for bands of rows from 0 to height - 1, some rows each.

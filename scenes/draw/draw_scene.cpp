@@ -269,17 +269,41 @@ void record_scene(const PreparedScene& prepared, const CameraMatrices& camera, d
   record_scene(prepared, camera, frame, pass, prepared.scene->lights);
 }
 
-void record_scene(const PreparedScene& prepared, const CameraMatrices& camera, double frame,
-                  RenderPass& pass, std::span<const Light> lights) {
+namespace {
+
+void begin_scene(const PreparedScene& prepared, RenderPass& pass) {
   pass.clear_colour = clear_colour(*prepared.scene);
   pass.clear_depth = 1.0f;
   pass.keep_depth = prepared.has_transparent || prepared.keeps_depth;
+}
+
+}  // namespace
+
+void record_scene(const PreparedScene& prepared, const CameraMatrices& camera, double frame,
+                  RenderPass& pass, std::span<const Light> lights) {
+  begin_scene(prepared, pass);
   const std::vector<Object>& objects = prepared.scene->objects;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     if (is_hidden(prepared, i)) continue;
     SurfaceDraw surface = surface_draw(*prepared.scene, objects[i], camera, frame);
     surface.input.lights = lights;
     if (!surface.opacity.blends) draw_surface(prepared, surface, pass);
+  }
+}
+
+void record_triangles(const PreparedScene& prepared, const CameraMatrices& camera, double frame,
+                      RenderPass& pass, std::span<const Light> lights,
+                      std::span<const std::vector<std::uint32_t>> indices_of_objects) {
+  begin_scene(prepared, pass);
+  for (std::size_t i = 0; i < indices_of_objects.size(); ++i) {
+    if (indices_of_objects[i].empty()) continue;
+    SurfaceDraw surface = surface_draw(*prepared.scene, prepared.scene->objects[i], camera, frame);
+    surface.input.lights = lights;
+    if (surface.shaders != nullptr) {
+      draw_surface(prepared, surface, pass);
+    } else {
+      draw_surface(prepared, surface, indices_of_objects[i], pass);
+    }
   }
 }
 

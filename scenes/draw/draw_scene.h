@@ -160,6 +160,12 @@ void record_scene(const PreparedScene& prepared, const CameraMatrices& camera, d
 void record_scene(const PreparedScene& prepared, const CameraMatrices& camera, double frame,
                   RenderPass& pass, std::span<const Light> lights);
 
+/// The same, of each object the triangles of these indices alone, which must outlive the draws; of
+/// one with shaders, which may look at a triangle's number, all or none.
+void record_triangles(const PreparedScene& prepared, const CameraMatrices& camera, double frame,
+                      RenderPass& pass, std::span<const Light> lights,
+                      std::span<const std::vector<std::uint32_t>> indices_of_objects);
+
 /// One of `parts` parts of record_scene(), each for a pass of its own on the same targets, whose
 /// depths are kept. The first clears. Part after part they draw what record_scene() draws, in its
 /// order: the same bits. With `materials` they stand for the scene's, one each, with its textures;

@@ -31,15 +31,19 @@ bool is_projected(const SceneShadows& shadows, ShadowKind kind) {
   return kind == ShadowKind::projected && !shadows.by_rays;
 }
 
-// Of one light, that has come or has moved.
+// Of one light, that has come or has moved; projected onto what the view shows, or onto all.
 void place_light(SceneShadows& shadows, std::size_t i, ShadowKind kind, const ShadowLight& light,
-                 std::span<const std::uint8_t> wanted, ThreadPool& pool) {
+                 bool is_of_view, ThreadPool& pool) {
   // Set last: if memory runs out in between, the next frame makes all of it again.
   shadows.placed[i].reset();
   for (std::vector<KeptBits>& of_layer : shadows.kept_bits) of_layer[i] = {};
-  shadows.projected[i] = is_projected(shadows, kind)
-                             ? project_by_grid(shadows.facets, light, pool, wanted)
-                             : without_triangles(shadows.facets, light);
+  if (!is_projected(shadows, kind)) {
+    shadows.projected[i] = without_triangles(shadows.facets, light);
+  } else if (is_of_view) {
+    shadows.projected[i] = project_onto(*shadows.wanted, shadows.facets, light, pool);
+  } else {
+    shadows.projected[i] = project_by_grid(shadows.facets, light, pool);
+  }
   shadows.maps[i] = {};
   shadows.volumes[i] = {};
   if (kind == ShadowKind::volumes) {
@@ -234,6 +238,41 @@ std::vector<Light> lights_left(std::span<const Light> lights, const SceneShadows
     if (is_out) left.back().colour *= 1.0f - lights[i].shadow_darkness;
   }
   return left;
+}
+
+// Finds the triangles that pixels with the mask show in any layer.
+void list_triangles(SceneShadows& shadows, const Scene& scene, std::size_t mask, const Tiles& tiles,
+                    std::span<const int> of_tiles, int width, int height) {
+  std::vector<std::uint8_t> is_listed(shadows.facets.facets.size());
+  for (std::size_t with_mask = 0; with_mask < shadows.masks.size(); ++with_mask) {
+    for (const int tile : of_tiles) {
+      const Rectangle area = area_of(tiles, tile, width, height);
+      for_each_tile_row(area, width, shadows.masks[with_mask],
+                        [&](int y, std::span<const std::uint8_t> row) {
+                          const std::size_t first =
+                              static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                              static_cast<std::size_t>(area.x_begin);
+                          for (std::size_t x = 0; x < row.size(); ++x) {
+                            if (row[x] != mask) continue;
+                            // What lies before a layer decides what is seen in it.
+                            for (const std::vector<SeenFacet>& layer : shadows.seen) {
+                              const SeenFacet seen = layer[first + x];
+                              if (shows_facet(seen)) is_listed[facet_of(seen)] = 1;
+                            }
+                          }
+                        });
+    }
+  }
+  shadows.indices_of_objects.resize(scene.objects.size());
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const std::vector<std::uint32_t>& indices = scene.meshes[scene.objects[i].mesh].indices;
+    std::vector<std::uint32_t>& listed = shadows.indices_of_objects[i];
+    listed.clear();
+    const std::uint8_t* is_there = is_listed.data() + shadows.numbered.meshes[i].first_facet;
+    for (std::size_t k = 0; k + 2 < indices.size(); k += 3) {
+      if (is_there[k / 3] != 0) listed.insert(listed.end(), &indices[k], &indices[k] + 3);
+    }
+  }
 }
 
 void copy_pixels(const Image& from, Image& to, const Rectangle& area,
@@ -433,12 +472,10 @@ void set_facets(SceneShadows& shadows, const Scene& scene, std::span<const Light
   shadows.frame = frame;
 }
 
-// Lights that have moved are projected onto the `wanted` receivers alone, or onto all. A light that
-// stays while these change is projected onto all, once.
-template <class Wanted>
-void place_lights(SceneShadows& shadows, std::span<const Light> lights, const Wanted& find_wanted,
-                  bool wanted_are_new, ThreadPool& pool) {
-  std::optional<std::vector<std::uint8_t>> wanted;
+// Lights that have moved are projected onto the receivers that `view` shows, or onto all. A light
+// that stays while these change is projected onto all, once.
+void place_lights(SceneShadows& shadows, std::span<const Light> lights,
+                  const std::optional<ShadowView>& view, bool sees_others, ThreadPool& pool) {
   const std::size_t count = shadows.lights.size();
   shadows.placed.resize(count);
   shadows.projected.resize(count);
@@ -448,25 +485,13 @@ void place_lights(SceneShadows& shadows, std::span<const Light> lights, const Wa
     const Light& light = lights[shadows.lights[i]];
     const ShadowLight placed = shadow_light(light);
     const bool stays = shadows.placed[i] == placed;
-    if (stays && (shadows.projected[i].of_all || !wanted_are_new)) continue;
-    if (!stays && !wanted) wanted = find_wanted();
-    place_light(shadows, i, light.shadows, placed,
-                stays ? std::span<const std::uint8_t>{} : std::span<const std::uint8_t>{*wanted},
-                pool);
-  }
-}
-
-// The receivers that any layer shows, an entry for each.
-std::vector<std::uint8_t> seen_receivers(const SceneShadows& shadows) {
-  std::vector<std::uint8_t> seen(shadows.facets.receivers.size());
-  for (const std::vector<SeenFacet>& layer : shadows.seen) {
-    SeenFacet last = 0;
-    for (const SeenFacet here : layer) {
-      if (here != last && shows_facet(here)) seen[shadows.facets.receiver_of[facet_of(here)]] = 1;
-      last = here;
+    if (stays && (shadows.projected[i].of_all || !sees_others)) continue;
+    const bool is_of_view = view && !stays;
+    if (is_of_view && !shadows.wanted && is_projected(shadows, light.shadows)) {
+      shadows.wanted = seen_receivers(shadows.facets, shadows.seen, *view);
     }
+    place_light(shadows, i, light.shadows, placed, is_of_view, pool);
   }
-  return seen;
 }
 
 }  // namespace
@@ -474,8 +499,7 @@ std::vector<std::uint8_t> seen_receivers(const SceneShadows& shadows) {
 void place_shadows(SceneShadows& shadows, const Scene& scene, std::span<const Light> lights,
                    double frame, ThreadPool& pool) {
   set_facets(shadows, scene, lights, frame);
-  place_lights(
-      shadows, lights, [] { return std::vector<std::uint8_t>{}; }, true, pool);
+  place_lights(shadows, lights, {}, true, pool);
 }
 
 MaskDraws cut_shadows(const SceneShadows& shadows, const CameraMatrices& camera, int width,
@@ -495,14 +519,15 @@ void add_shadows(const PreparedScene& prepared, const CameraMatrices& camera, do
   shadows.view_stays = !sees_others;
   if (sees_others) {
     shadows.seen_from.reset();
+    shadows.wanted.reset();
     shadows.seen = draw_seen_facets(shadows.numbered, scene, camera, frame, width, height,
                                     layers.size(), pool, behind_before, prepared.hidden);
     shadows.kept_bits.assign(layers.size(), std::vector<KeptBits>(shadows.lights.size()));
   }
   if (prepared.on_shadows) prepared.on_shadows(false);
   set_facets(shadows, scene, lights, frame);
-  place_lights(
-      shadows, lights, [&] { return seen_receivers(shadows); }, sees_others, pool);
+  place_lights(shadows, lights, shadow_view(camera, width, height, shadows.pass.profile),
+               sees_others, pool);
   shadows.seen_from = std::move(from);
   if (prepared.on_shadows) prepared.on_shadows(true);
   draw_masks(shadows, scene, lights, camera, width, height, shadows.pass.profile, pool);
@@ -510,11 +535,13 @@ void add_shadows(const PreparedScene& prepared, const CameraMatrices& camera, do
   const std::vector<std::vector<int>> with_shares =
       tiles_with_shares(shadows, tiles, width, height);
   keep_unshadowed(shadows, with_shares, tiles, layers);
-  const auto redraw = [&](std::size_t mask, std::span<const int> of_tiles, const auto& use) {
+  set_targets(shadows, layers.size(), width, height);
+  shadows.pass.behind_before = behind_before;
+  // Draws what record(lights) has recorded.
+  const auto redraw = [&](std::size_t mask, std::span<const int> of_tiles, const auto& record,
+                          const auto& use) {
     const std::vector<Light> left = lights_left(lights, shadows, mask);
-    set_targets(shadows, layers.size(), width, height);
-    shadows.pass.behind_before = behind_before;
-    record_scene(prepared, camera, frame, shadows.pass, left);
+    record(left);
     TileLists lists;
     sort_into_tiles({&shadows.pass, 1}, {&lists, 1}, pool);
     const auto count = static_cast<int>(of_tiles.size());
@@ -532,17 +559,28 @@ void add_shadows(const PreparedScene& prepared, const CameraMatrices& camera, do
       if (tiles.masks[tile].test(mask)) with_mask.push_back(static_cast<int>(tile));
     }
     if (with_mask.empty()) continue;
-    redraw(mask, with_mask, [&](std::size_t i, const Rectangle& area) {
-      copy_pixels(shadows.layers[i], *layers[i], area, shadows.masks[i], mask);
-    });
+    list_triangles(shadows, scene, mask, tiles, with_mask, width, height);
+    redraw(
+        mask, with_mask,
+        [&](std::span<const Light> left) {
+          record_triangles(prepared, camera, frame, shadows.pass, left, shadows.indices_of_objects);
+        },
+        [&](std::size_t i, const Rectangle& area) {
+          copy_pixels(shadows.layers[i], *layers[i], area, shadows.masks[i], mask);
+        });
   }
   for (std::size_t light = 0; light < with_shares.size(); ++light) {
     if (with_shares[light].empty()) continue;
     const int whole = share_whole(lights[shadows.lights[light]]);
-    redraw(std::size_t{1} << light, with_shares[light], [&](std::size_t i, const Rectangle& area) {
-      take_shares(shadows.shares[i][light], whole, area, shadows.unshadowed[i], shadows.layers[i],
-                  *layers[i], shadows.pass.profile);
-    });
+    redraw(
+        std::size_t{1} << light, with_shares[light],
+        [&](std::span<const Light> left) {
+          record_scene(prepared, camera, frame, shadows.pass, left);
+        },
+        [&](std::size_t i, const Rectangle& area) {
+          take_shares(shadows.shares[i][light], whole, area, shadows.unshadowed[i],
+                      shadows.layers[i], *layers[i], shadows.pass.profile);
+        });
   }
 }
 

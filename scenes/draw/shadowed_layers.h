@@ -76,6 +76,8 @@ struct SceneShadows {
   std::optional<SeenFrom> seen_from{};
   bool view_stays = false;                   ///< since the frame before: masks are worth keeping
   std::vector<std::vector<SeenFacet>> seen;  ///< of each layer
+  /// seen_receivers() of them, once a light has moved.
+  std::optional<std::vector<WantedReceiver>> wanted{};
   /// Of each layer, of each of `lights`: empty if it has to be drawn.
   std::vector<std::vector<KeptBits>> kept_bits{};
   std::vector<std::vector<std::uint8_t>> masks;  ///< of each layer: shadow_mask.h
@@ -85,7 +87,8 @@ struct SceneShadows {
   /// kernels of one texel without such a rule.
   std::vector<std::vector<std::vector<std::uint8_t>>> shares;
   std::vector<Image> unshadowed;  ///< layers with all lights, where there are shares
-  // The scene without some lights.
+  // The scene without some lights: of each object the triangles that are drawn.
+  std::vector<std::vector<std::uint32_t>> indices_of_objects;
   RenderPass pass;
   std::vector<Image> layers, depths;
 };

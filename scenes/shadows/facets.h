@@ -73,6 +73,15 @@ struct Receiver {
   std::span<const glm::dvec3> corners_of_outline() const { return {outline.data(), corners}; }
 };
 
+/// A receiver, and a convex part of its outline that shadows are wanted on.
+struct WantedReceiver {
+  std::uint32_t receiver;
+  std::array<glm::dvec3, 8> outline;
+  std::size_t corners;
+
+  std::span<const glm::dvec3> corners_of_outline() const { return {outline.data(), corners}; }
+};
+
 struct Facets {
   std::vector<Facet> facets;
   std::vector<FacetPlane> planes;          ///< of each facet

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "raster/threads/loops.h"
 #include "scenes/shadows/facets.h"
 
 namespace softfocus {
@@ -71,21 +72,15 @@ glm::dvec3 seen_by_side(glm::dvec3 p, int side) {
   return {p[(axis + 1) % 3], p[(axis + 2) % 3], sign * p[axis]};
 }
 
-// Calls use(first cell of a row, count) for each row of cells that the polygon may touch.
+// Calls use(side, range) for each side whose cells the polygon may touch.
 template <class Use>
-void for_each_row(const LightGrid& grid, std::span<const glm::dvec3> polygon, const Use& use) {
-  const auto rows_of = [&](int side, const PlaceBox& box) {
-    const CellRange range = range_of(box.low, box.high, grid.cells);
-    for (int y = range.y_begin; y <= range.y_end; ++y) {
-      use((side * grid.cells + y) * grid.cells + range.x_begin, range.x_end - range.x_begin + 1);
-    }
-  };
+void for_each_range(const LightGrid& grid, std::span<const glm::dvec3> polygon, const Use& use) {
   if (grid.sides == 1) {
     PlaceBox box;
     for (const glm::dvec3& corner : polygon) {
       add(box, (along_axes(grid, corner) - grid.low) / grid.size);
     }
-    rows_of(0, box);
+    use(0, range_of(box.low, box.high, grid.cells));
     return;
   }
   for (int side = 0; side < 6; ++side) {
@@ -106,8 +101,45 @@ void for_each_row(const LightGrid& grid, std::span<const glm::dvec3> polygon, co
         add(box, glm::dvec2{p.x, p.y} / p.z * 0.5 + 0.5);
       }
     }
-    rows_of(side, box);
+    use(side, range_of(box.low, box.high, grid.cells));
   }
+}
+
+// Calls use(first cell of a row, count) for each row of cells that the polygon may touch.
+template <class Use>
+void for_each_row(const LightGrid& grid, std::span<const glm::dvec3> polygon, const Use& use) {
+  for_each_range(grid, polygon, [&](int side, const CellRange& range) {
+    for (int y = range.y_begin; y <= range.y_end; ++y) {
+      use((side * grid.cells + y) * grid.cells + range.x_begin, range.x_end - range.x_begin + 1);
+    }
+  });
+}
+
+std::size_t cell_count(const LightGrid& grid) {
+  return static_cast<std::size_t>(grid.sides) * static_cast<std::size_t>(grid.cells) *
+         static_cast<std::size_t>(grid.cells);
+}
+
+// A polygon in front of which half of the cells lie looks at all casters.
+bool looks_at_all(const LightGrid& grid, std::span<const glm::dvec3> polygon) {
+  std::size_t cells = 0;
+  for_each_range(grid, polygon, [&](int, const CellRange& range) {
+    cells += static_cast<std::size_t>(range.x_end - range.x_begin + 1) *
+             static_cast<std::size_t>(range.y_end - range.y_begin + 1);
+  });
+  return cells > cell_count(grid) / 2;
+}
+
+// An entry of each cell: 1 where a wanted receiver may look.
+std::vector<std::uint8_t> looked_at(const LightGrid& grid, std::span<const WantedReceiver> wanted) {
+  std::vector<std::uint8_t> marks(cell_count(grid));
+  for (const WantedReceiver& receiver : wanted) {
+    if (looks_at_all(grid, receiver.corners_of_outline())) continue;
+    for_each_row(grid, receiver.corners_of_outline(), [&](int first, int count) {
+      std::fill_n(marks.begin() + first, count, std::uint8_t{1});
+    });
+  }
+  return marks;
 }
 
 void set_side(LightGrid& grid, std::span<const Facet> facets,
@@ -133,16 +165,6 @@ void set_side(LightGrid& grid, std::span<const Facet> facets,
                std::max(box.high.y - box.low.y, least_size)};
 }
 
-// Without a pool, one after the other.
-template <class Work>
-void for_each(ThreadPool* pool, std::size_t count, const Work& work) {
-  if (pool != nullptr) {
-    pool->for_each(static_cast<int>(count), [&](int i) { work(static_cast<std::size_t>(i)); });
-    return;
-  }
-  for (std::size_t i = 0; i < count; ++i) work(i);
-}
-
 // Cells of a row that name a caster.
 struct CasterRow {
   std::uint32_t caster;
@@ -154,24 +176,34 @@ using RowsOfPart = std::vector<CasterRow>;
 
 constexpr std::size_t kCastersOfRows = 4096;
 
-// All of them, part after part; none if they are more than `most` cells.
+// Entries that a task counts by itself: threads share the number of all.
+constexpr std::size_t kEntriesOfStep = 1024;
+
+// All of them, part after part, from their first marked cell to their last; none if they are more
+// than `most` cells. Without marks all cells are.
 std::optional<std::vector<RowsOfPart>> caster_rows(const LightGrid& grid,
                                                    std::span<const Facet> facets,
-                                                   std::span<const std::uint32_t> casters,
+                                                   std::span<const std::uint8_t> marks,
                                                    std::size_t most, ThreadPool* pool) {
+  const std::span<const std::uint32_t> casters = grid.all;
   std::vector<RowsOfPart> parts((casters.size() + kCastersOfRows - 1) / kCastersOfRows);
   std::atomic<std::size_t> entries{0};  // of all parts so far
-  for_each(pool, parts.size(), [&](std::size_t number) {
-    const std::size_t begin = number * kCastersOfRows;
-    for (const std::uint32_t caster :
-         casters.subspan(begin, std::min(kCastersOfRows, casters.size() - begin))) {
-      if (entries.load(std::memory_order_relaxed) > most) return;
-      std::size_t cells = 0;
-      for_each_row(grid, facets[caster].corners, [&](int first, int count) {
-        parts[number].push_back({caster, first, count});
+  for_each_part(pool, casters.size(), kCastersOfRows, [&](std::size_t begin, std::size_t end) {
+    RowsOfPart& part = parts[begin / kCastersOfRows];
+    std::size_t cells = 0;  // not yet among the entries
+    for (std::size_t i = begin; i < end; ++i) {
+      for_each_row(grid, facets[casters[i]].corners, [&](int first, int count) {
+        if (!marks.empty()) {
+          for (; count > 0 && marks[static_cast<std::size_t>(first)] == 0; --count) ++first;
+          while (count > 0 && marks[static_cast<std::size_t>(first + count - 1)] == 0) --count;
+          if (count == 0) return;
+        }
+        part.push_back({casters[i], first, count});
         cells += static_cast<std::size_t>(count);
       });
-      entries.fetch_add(cells, std::memory_order_relaxed);
+      if (cells < kEntriesOfStep && i + 1 < end) continue;
+      if (entries.fetch_add(cells, std::memory_order_relaxed) > most) return;
+      cells = 0;
     }
   });
   if (entries > most) return {};
@@ -182,9 +214,8 @@ std::optional<std::vector<RowsOfPart>> caster_rows(const LightGrid& grid,
 std::vector<std::uint32_t> casters_of(const Facets& facets, const ShadowLight& light,
                                       ThreadPool* pool) {
   std::vector<std::uint8_t> stops(facets.facets.size());
-  for_each(pool, (stops.size() + kCastersOfRows - 1) / kCastersOfRows, [&](std::size_t number) {
-    const std::size_t begin = number * kCastersOfRows;
-    for (std::size_t i = begin; i < std::min(begin + kCastersOfRows, stops.size()); ++i) {
+  for_each_part(pool, stops.size(), kCastersOfRows, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
       stops[i] = stops_light(facets.facets[i], facets.planes[i], light) ? 1 : 0;
     }
   });
@@ -203,33 +234,37 @@ bool stops_light(const Facet& facet, const FacetPlane& plane, const ShadowLight&
   return facet.two_sided ? before != 0.0 : before > 0.0;
 }
 
-LightGrid make_light_grid(const Facets& facets, const ShadowLight& light, ThreadPool* pool) {
+LightGrid make_light_grid(const Facets& facets, const ShadowLight& light, ThreadPool* pool,
+                          std::span<const WantedReceiver> wanted) {
   LightGrid grid;
   grid.light = light;
   grid.sides = light.w == 0.0 ? 1 : 6;
   grid.facets = facets.facets.size();
-  const std::vector<std::uint32_t> casters = casters_of(facets, light, pool);
-  const double per_side = static_cast<double>(casters.size()) / (grid.sides == 1 ? 0.5 : 1.5);
+  grid.all = casters_of(facets, light, pool);
+  const double per_side = static_cast<double>(grid.all.size()) / (grid.sides == 1 ? 0.5 : 1.5);
   grid.cells = std::clamp(static_cast<int>(std::sqrt(per_side)), 1, kMostCells);
-  if (grid.sides == 1) set_side(grid, facets.facets, casters);
-  const std::size_t most = kMostEntries * (casters.size() + 1);
-  constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
-  auto rows = caster_rows(grid, facets.facets, casters, grid.cells > 1 ? most : kAny, pool);
+  if (grid.sides == 1) set_side(grid, facets.facets, grid.all);
+  const std::size_t most = kMostEntries * (grid.all.size() + 1);
+  const auto rows_of_cells = [&] {
+    const std::vector<std::uint8_t> marks =
+        wanted.empty() ? std::vector<std::uint8_t>{} : looked_at(grid, wanted);
+    constexpr std::size_t kAny = std::numeric_limits<std::size_t>::max();
+    return caster_rows(grid, facets.facets, marks, grid.cells > 1 ? most : kAny, pool);
+  };
+  auto rows = rows_of_cells();
   while (!rows) {
     grid.cells /= 2;
-    rows = caster_rows(grid, facets.facets, casters, grid.cells > 1 ? most : kAny, pool);
+    rows = rows_of_cells();
   }
 
-  const auto cell_count = static_cast<std::size_t>(grid.sides) *
-                          static_cast<std::size_t>(grid.cells) *
-                          static_cast<std::size_t>(grid.cells);
-  grid.begins.assign(cell_count + 1, 0);
+  const std::size_t cells = cell_count(grid);
+  grid.begins.assign(cells + 1, 0);
   for (const RowsOfPart& part : *rows) {
     for (const auto& [caster, first, count] : part) {
       for (int i = 0; i < count; ++i) ++grid.begins[static_cast<std::size_t>(first + i) + 1];
     }
   }
-  for (std::size_t i = 0; i < cell_count; ++i) grid.begins[i + 1] += grid.begins[i];
+  for (std::size_t i = 0; i < cells; ++i) grid.begins[i + 1] += grid.begins[i];
   grid.casters.resize(grid.begins.back());
   std::vector<std::uint32_t> next(grid.begins.begin(), grid.begins.end() - 1);
   for (const RowsOfPart& part : *rows) {
@@ -257,6 +292,7 @@ void find_casters(const LightGrid& grid, std::span<const glm::dvec3> polygon,
 std::span<const std::uint32_t> find_casters(const LightGrid& grid,
                                             std::span<const glm::dvec3> polygon,
                                             CasterSearch& search) {
+  if (looks_at_all(grid, polygon)) return grid.all;
   std::vector<std::uint32_t>& found = search.found;
   found.clear();
   if (search.found_in.size() != grid.facets || ++search.search == 0) {

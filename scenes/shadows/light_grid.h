@@ -26,15 +26,17 @@ struct LightGrid {
   /// increasing order.
   std::vector<std::uint32_t> begins;
   std::vector<std::uint32_t> casters;
-  std::size_t facets = 0;  ///< of the scene
+  std::vector<std::uint32_t> all;  ///< of the casters, in increasing order
+  std::size_t facets = 0;          ///< of the scene
 };
 
 /// Whether a facet stops light from there: it casts, and the light is on a side that it has.
 bool stops_light(const Facet& facet, const FacetPlane& plane, const ShadowLight& light);
 
-/// The same for any number of threads; without a pool, by one.
+/// The same for any number of threads; without a pool, by one. If any receivers are `wanted`,
+/// casters are found before their outlines alone.
 LightGrid make_light_grid(const Facets& facets, const ShadowLight& light,
-                          ThreadPool* pool = nullptr);
+                          ThreadPool* pool = nullptr, std::span<const WantedReceiver> wanted = {});
 
 /// Fills `found` with the casters of all cells that a convex polygon may touch, in increasing
 /// order, each once.
@@ -48,7 +50,8 @@ struct CasterSearch {
   std::uint32_t search = 0;
 };
 
-/// The same, for polygons that touch many cells. Valid until the next search.
+/// The same, for polygons that touch many cells; of half of the cells, all casters. Valid until the
+/// next search.
 std::span<const std::uint32_t> find_casters(const LightGrid& grid,
                                             std::span<const glm::dvec3> polygon,
                                             CasterSearch& search);

@@ -30,14 +30,14 @@ struct LitReceiver {
   FacetPlane plane;
   double light_height;  // a cosine if the light is directional
   std::span<const glm::dvec3> outline;
-  std::array<EdgePlane, 4> edges;  // of the outline
+  std::array<EdgePlane, 8> edges;  // of the outline
   std::size_t edge_count = 0;
 };
 
-LitReceiver lit_receiver(const Receiver& receiver, const ShadowLight& light, LitSide side) {
-  FacetPlane plane = receiver.plane;
+LitReceiver lit_receiver(FacetPlane plane, std::span<const glm::dvec3> outline,
+                         const ShadowLight& light, LitSide side) {
   if (side == LitSide::back) plane = {-plane.normal, -plane.offset};
-  LitReceiver lit{plane, height_over(plane, light), receiver.corners_of_outline(), {}};
+  LitReceiver lit{plane, height_over(plane, light), outline, {}};
   for (std::size_t i = 0; i < lit.outline.size(); ++i) {
     EdgePlane edge = edge_plane(lit.outline, i, light);
     edge.across = normalize(edge.across);
@@ -197,14 +197,25 @@ CasterPolygon shadow_of(const Facets& facets, std::uint32_t caster, const LitRec
   return shadow;
 }
 
+// A receiver, and where on it shadows are wanted.
+struct Target {
+  std::uint32_t receiver;
+  std::span<const glm::dvec3> outline;
+};
+
+Target target_of(const Facets& facets, std::uint32_t receiver) {
+  return {receiver, facets.receivers[receiver].corners_of_outline()};
+}
+
 // Calls use(caster, polygon) for the shadow of each caster, in their order.
 template <class Use>
-void for_each_shadow(const Facets& facets, std::uint32_t number, const ShadowLight& light,
+void for_each_shadow(const Facets& facets, const Target& target, const ShadowLight& light,
                      LitSide side, std::span<const std::uint32_t> casters, Throws known,
                      const Use& use) {
-  const LitReceiver receiver = lit_receiver(facets.receivers[number], light, side);
+  const LitReceiver receiver =
+      lit_receiver(facets.receivers[target.receiver].plane, target.outline, light, side);
   for (const std::uint32_t caster : casters) {
-    if (facets.receiver_of[caster] == number) continue;
+    if (facets.receiver_of[caster] == target.receiver) continue;
     const CasterPolygon polygon = shadow_of(facets, caster, receiver, light, known);
     if (polygon.count > 0) use(caster, polygon);
   }
@@ -232,36 +243,40 @@ std::uint32_t receivers_a_task(std::uint32_t receivers) {
   return std::clamp(receivers / 256, std::uint32_t{1}, std::uint32_t{64});
 }
 
+// Receivers whose sides a task tells.
+constexpr std::size_t kReceiversOfTask = 4096;
+
 // Casters before a receiver, as one task takes them: all, or of a receiver of many, which may be a
 // floor, a part.
 constexpr std::size_t kCastersOfTask = 2048;
+constexpr std::size_t kManyCasters = 2 * kCastersOfTask;
 
 struct CasterPart {
-  std::uint32_t receiver;
+  Target target;
   std::vector<std::uint32_t> casters;
   std::vector<ProjectedTriangle> triangles{};
   std::size_t first = 0;  // of the receiver's
 };
 
-// The casters that a task's first pass found to throw a shadow; those of its receiver i end at
+// The casters that a task's first pass found to throw a shadow; those of its target i end at
 // ends[i].
 struct FoundCasters {
   std::vector<std::uint32_t> casters;
   std::vector<std::size_t> ends;
-  std::vector<CasterPart> parts;  // of its receivers of many
+  std::vector<CasterPart> parts;  // of its targets of many
 };
 
-void add_parts(std::uint32_t receiver, std::span<const std::uint32_t> casters,
+void add_parts(const Target& target, std::span<const std::uint32_t> casters,
                std::vector<CasterPart>& parts) {
   for (std::size_t i = 0; i < casters.size(); i += kCastersOfTask) {
     const auto part = casters.subspan(i, std::min(kCastersOfTask, casters.size() - i));
-    parts.push_back({receiver, {part.begin(), part.end()}});
+    parts.push_back({target, {part.begin(), part.end()}});
   }
 }
 
 void project_part(const Facets& facets, const ShadowLight& light, LitSide side, CasterPart& part) {
   part.triangles.reserve(part.casters.size());
-  for_each_shadow(facets, part.receiver, light, side, part.casters, Throws::perhaps,
+  for_each_shadow(facets, part.target, light, side, part.casters, Throws::perhaps,
                   [&](std::uint32_t, const CasterPolygon& polygon) {
                     triangulate(polygon, [&](const ProjectedTriangle& triangle) {
                       part.triangles.push_back(triangle);
@@ -269,32 +284,32 @@ void project_part(const Facets& facets, const ShadowLight& light, LitSide side, 
                   });
 }
 
-// find(receiver, memory) gives a receiver's casters. Receivers of more than `many` are taken in
-// parts. If any receivers are `wanted`, others get no triangles.
-template <class Memory, class Find>
+// target(i) gives the i-th of `targets`, in the order of receivers, and find(target, memory) its
+// casters. Targets of more than `many` are taken in parts.
+template <class Memory, class Targets, class Find>
 ProjectedShadows count_and_fill(const Facets& facets, const ShadowLight& light, ThreadPool& pool,
-                                std::span<const std::uint8_t> wanted, std::size_t many,
+                                std::uint32_t targets, const Targets& target, std::size_t many,
                                 const Find& find) {
   ProjectedShadows made;
-  made.lit = lit_sides(facets, light);
-  made.of_all = wanted.empty();
-  const auto receivers = static_cast<std::uint32_t>(facets.receivers.size());
-  const std::uint32_t a_task = receivers_a_task(receivers);
-  const auto tasks = static_cast<int>((receivers + a_task - 1) / a_task);
+  made.lit = lit_sides(facets, light, &pool);
+  const std::uint32_t a_task = receivers_a_task(targets);
+  const auto tasks = static_cast<int>((targets + a_task - 1) / a_task);
   std::vector<FoundCasters> found(static_cast<std::size_t>(tasks));
-  made.begins.assign(receivers + std::size_t{1}, 0);
+  made.begins.assign(facets.receivers.size() + 1, 0);
   for_each_with<Memory>(pool, tasks, [&](int task, Memory& memory) {
     FoundCasters& of_task = found[static_cast<std::size_t>(task)];
     const std::uint32_t begin = static_cast<std::uint32_t>(task) * a_task;
-    for (std::uint32_t r = begin; r < std::min(begin + a_task, receivers); ++r) {
-      if (is_lit(made.lit[r]) && (wanted.empty() || wanted[r] != 0)) {
-        const std::span<const std::uint32_t> casters = find(r, memory);
+    for (std::uint32_t i = begin; i < std::min(begin + a_task, targets); ++i) {
+      const Target of = target(i);
+      const LitSide side = made.lit[of.receiver];
+      if (is_lit(side)) {
+        const std::span<const std::uint32_t> casters = find(of, memory);
         if (casters.size() > many) {
-          add_parts(r, casters, of_task.parts);
+          add_parts(of, casters, of_task.parts);
         } else {
-          for_each_shadow(facets, r, light, made.lit[r], casters, Throws::perhaps,
+          for_each_shadow(facets, of, light, side, casters, Throws::perhaps,
                           [&](std::uint32_t caster, const CasterPolygon& polygon) {
-                            made.begins[r + 1] += polygon.count - 2;
+                            made.begins[of.receiver + std::size_t{1}] += polygon.count - 2;
                             of_task.casters.push_back(caster);
                           });
         }
@@ -308,11 +323,12 @@ ProjectedShadows count_and_fill(const Facets& facets, const ShadowLight& light, 
   }
   pool.for_each(static_cast<int>(parts.size()), [&](int i) {
     CasterPart& part = *parts[static_cast<std::size_t>(i)];
-    project_part(facets, light, made.lit[part.receiver], part);
+    project_part(facets, light, made.lit[part.target.receiver], part);
   });
   for (CasterPart* part : parts) {
-    part->first = made.begins[part->receiver + std::size_t{1}];
-    made.begins[part->receiver + std::size_t{1}] += part->triangles.size();
+    std::size_t& count = made.begins[part->target.receiver + std::size_t{1}];
+    part->first = count;
+    count += part->triangles.size();
   }
   std::partial_sum(made.begins.begin(), made.begins.end(), made.begins.begin());
   made.triangles.resize(made.begins.back());
@@ -320,19 +336,19 @@ ProjectedShadows count_and_fill(const Facets& facets, const ShadowLight& light, 
     const CasterPart& part = *parts[static_cast<std::size_t>(i)];
     std::copy(part.triangles.begin(), part.triangles.end(),
               made.triangles.begin() +
-                  static_cast<std::ptrdiff_t>(made.begins[part.receiver] + part.first));
+                  static_cast<std::ptrdiff_t>(made.begins[part.target.receiver] + part.first));
   });
   pool.for_each(tasks, [&](int task) {
     const FoundCasters& of_task = found[static_cast<std::size_t>(task)];
     const std::uint32_t begin = static_cast<std::uint32_t>(task) * a_task;
     std::size_t first = 0;
     for (std::size_t i = 0; i < of_task.ends.size(); ++i) {
-      const std::uint32_t r = begin + static_cast<std::uint32_t>(i);
+      const Target of = target(begin + static_cast<std::uint32_t>(i));
       const std::span casters{of_task.casters.data() + first, of_task.ends[i] - first};
       first = of_task.ends[i];
       if (casters.empty()) continue;
-      ProjectedTriangle* to = made.triangles.data() + made.begins[r];
-      for_each_shadow(facets, r, light, made.lit[r], casters, Throws::a_shadow,
+      ProjectedTriangle* to = made.triangles.data() + made.begins[of.receiver];
+      for_each_shadow(facets, of, light, made.lit[of.receiver], casters, Throws::a_shadow,
                       [&](std::uint32_t, const CasterPolygon& polygon) {
                         triangulate(polygon,
                                     [&](const ProjectedTriangle& triangle) { *to++ = triangle; });
@@ -353,12 +369,13 @@ LitSide lit_side(const Receiver& receiver, const ShadowLight& light, double epsi
   return before < -least && receiver.two_sided ? LitSide::back : LitSide::none;
 }
 
-std::vector<LitSide> lit_sides(const Facets& facets, const ShadowLight& light) {
-  std::vector<LitSide> lit;
-  lit.reserve(facets.receivers.size());
-  for (const Receiver& receiver : facets.receivers) {
-    lit.push_back(lit_side(receiver, light, facets.epsilon_m));
-  }
+std::vector<LitSide> lit_sides(const Facets& facets, const ShadowLight& light, ThreadPool* pool) {
+  std::vector<LitSide> lit(facets.receivers.size());
+  for_each_part(pool, lit.size(), kReceiversOfTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t r = begin; r < end; ++r) {
+      lit[r] = lit_side(facets.receivers[r], light, facets.epsilon_m);
+    }
+  });
   return lit;
 }
 
@@ -369,7 +386,7 @@ ProjectedShadows project_in_sequence(const Facets& facets, const ShadowLight& li
   const std::vector<std::uint32_t> casters = all_casters(facets, light);
   for (std::uint32_t r = 0; r < facets.receivers.size(); ++r) {
     if (is_lit(made.lit[r])) {
-      for_each_shadow(facets, r, light, made.lit[r], casters, Throws::perhaps,
+      for_each_shadow(facets, target_of(facets, r), light, made.lit[r], casters, Throws::perhaps,
                       [&](std::uint32_t, const CasterPolygon& polygon) {
                         triangulate(polygon, [&](const ProjectedTriangle& triangle) {
                           made.triangles.push_back(triangle);
@@ -386,17 +403,38 @@ ProjectedShadows project_in_parallel(const Facets& facets, const ShadowLight& li
   const std::vector<std::uint32_t> casters = all_casters(facets, light);
   struct Nothing {};
   return count_and_fill<Nothing>(
-      facets, light, pool, {}, casters.size(),
-      [&](std::uint32_t, Nothing&) { return std::span<const std::uint32_t>{casters}; });
+      facets, light, pool, static_cast<std::uint32_t>(facets.receivers.size()),
+      [&](std::uint32_t r) { return target_of(facets, r); }, casters.size(),
+      [&](const Target&, Nothing&) { return std::span<const std::uint32_t>{casters}; });
 }
 
-ProjectedShadows project_by_grid(const Facets& facets, const ShadowLight& light, ThreadPool& pool,
-                                 std::span<const std::uint8_t> wanted) {
+ProjectedShadows project_by_grid(const Facets& facets, const ShadowLight& light, ThreadPool& pool) {
   const LightGrid grid = make_light_grid(facets, light, &pool);
   return count_and_fill<CasterSearch>(
-      facets, light, pool, wanted, 2 * kCastersOfTask, [&](std::uint32_t r, CasterSearch& search) {
-        return find_casters(grid, facets.receivers[r].corners_of_outline(), search);
+      facets, light, pool, static_cast<std::uint32_t>(facets.receivers.size()),
+      [&](std::uint32_t r) { return target_of(facets, r); }, kManyCasters,
+      [&](const Target& of, CasterSearch& search) {
+        return find_casters(grid, of.outline, search);
       });
+}
+
+ProjectedShadows project_onto(std::span<const WantedReceiver> wanted, const Facets& facets,
+                              const ShadowLight& light, ThreadPool& pool) {
+  // Which cells they look at is worth finding if they are few.
+  const bool are_few = wanted.size() < facets.receivers.size() / 4;
+  const LightGrid grid =
+      make_light_grid(facets, light, &pool, are_few ? wanted : std::span<const WantedReceiver>{});
+  ProjectedShadows made = count_and_fill<CasterSearch>(
+      facets, light, pool, static_cast<std::uint32_t>(wanted.size()),
+      [&](std::uint32_t i) {
+        return Target{wanted[i].receiver, wanted[i].corners_of_outline()};
+      },
+      kManyCasters,
+      [&](const Target& of, CasterSearch& search) {
+        return find_casters(grid, of.outline, search);
+      });
+  made.of_all = false;
+  return made;
 }
 
 }  // namespace softfocus

@@ -20,8 +20,9 @@ enum class LitSide : std::uint8_t { none, front, back, both };
 
 LitSide lit_side(const Receiver& receiver, const ShadowLight& light, double epsilon_m);
 
-/// Of each receiver.
-std::vector<LitSide> lit_sides(const Facets& facets, const ShadowLight& light);
+/// Of each receiver; without a pool, by one thread.
+std::vector<LitSide> lit_sides(const Facets& facets, const ShadowLight& light,
+                               ThreadPool* pool = nullptr);
 
 /// A shadow's triangle in homogeneous coordinates of the world, w >= 0. It lies in its receiver's
 /// plane; corners of w = 0 are infinitely far.
@@ -45,9 +46,12 @@ ProjectedShadows project_in_parallel(const Facets& facets, const ShadowLight& li
                                      ThreadPool& pool);
 
 /// The same bits. As project_in_parallel(), but each receiver looks at the casters that a
-/// LightGrid finds before it. With `wanted`, an entry for each receiver, others than those that are
-/// not 0 get no triangles.
-ProjectedShadows project_by_grid(const Facets& facets, const ShadowLight& light, ThreadPool& pool,
-                                 std::span<const std::uint8_t> wanted = {});
+/// LightGrid finds before it.
+ProjectedShadows project_by_grid(const Facets& facets, const ShadowLight& light, ThreadPool& pool);
+
+/// Of the triangles that project_by_grid() has on the wanted receivers, in their order, those that
+/// may touch the outlines; and on no others.
+ProjectedShadows project_onto(std::span<const WantedReceiver> wanted, const Facets& facets,
+                              const ShadowLight& light, ThreadPool& pool);
 
 }  // namespace softfocus

@@ -93,11 +93,29 @@ void find_seen(const Facets& facets, std::span<const SeenFacet> seen,
   if (run_of != kShowsNone) widen(found.boxes[run_of], run_begin, width, y);
 }
 
-// 3 corners, and one more for each side of the box.
-struct ClipPolygonOfShadow {
-  std::array<glm::dvec4, 12> corners;
+// 4 corners at most, and one more for each side of a box.
+template <class Point>
+struct CutPolygon {
+  std::array<Point, 12> corners;
   std::size_t count = 0;
 };
+
+// Keeps what has inside_by(corner) >= 0.
+template <class Point, class InsideBy>
+void cut(CutPolygon<Point>& polygon, const InsideBy& inside_by) {
+  CutPolygon<Point> kept;
+  const auto put = [&](const Point& p) {
+    if (kept.count < kept.corners.size()) kept.corners[kept.count++] = p;
+  };
+  for (std::size_t i = 0; i < polygon.count; ++i) {
+    const Point &a = polygon.corners[i], &b = polygon.corners[(i + 1) % polygon.count];
+    const double d_a = inside_by(a), d_b = inside_by(b);
+    if (d_a >= 0.0) put(a);
+    if ((d_a < 0.0) == (d_b < 0.0)) continue;
+    put(d_a < 0.0 ? b + (a - b) * (d_b / (d_b - d_a)) : a + (b - a) * (d_a / (d_a - d_b)));
+  }
+  polygon = kept;
+}
 
 // A box of pixels in clip coordinates: x_low w <= x <= x_high w, likewise y.
 struct ClipBox {
@@ -110,23 +128,6 @@ double inside_by(const ClipBox& box, const glm::dvec4& p, int side) {
     case 1: return box.x_high * p.w - p.x;
     case 2: return p.y - box.y_low * p.w;
     default: return box.y_high * p.w - p.y;
-  }
-}
-
-void cut_to_box(ClipPolygonOfShadow& polygon, const ClipBox& box) {
-  for (int side = 0; side < 4 && polygon.count > 0; ++side) {
-    ClipPolygonOfShadow kept;
-    const auto put = [&](const glm::dvec4& p) {
-      if (kept.count < kept.corners.size()) kept.corners[kept.count++] = p;
-    };
-    for (std::size_t i = 0; i < polygon.count; ++i) {
-      const glm::dvec4 &a = polygon.corners[i], &b = polygon.corners[(i + 1) % polygon.count];
-      const double d_a = inside_by(box, a, side), d_b = inside_by(box, b, side);
-      if (d_a >= 0.0) put(a);
-      if ((d_a < 0.0) == (d_b < 0.0)) continue;
-      put(d_a < 0.0 ? b + (a - b) * (d_b / (d_b - d_a)) : a + (b - a) * (d_a / (d_a - d_b)));
-    }
-    polygon = kept;
   }
 }
 
@@ -153,7 +154,7 @@ ClipBox clip_box(const Rectangle& pixels, const ShadowView& view) {
 template <class Use>
 void cut_shadow(const ProjectedTriangle& triangle, const ShadowView& view, const ClipBox& box,
                 const Use& use) {
-  ClipPolygonOfShadow polygon;
+  CutPolygon<glm::dvec4> polygon;
   for (const glm::dvec4& corner : triangle) {
     polygon.corners[polygon.count++] = to_clip(view.world_to_clip, corner);
   }
@@ -164,13 +165,31 @@ void cut_shadow(const ProjectedTriangle& triangle, const ShadowView& view, const
     if (outside == 3) return;
     cuts |= outside > 0;
   }
-  if (cuts) cut_to_box(polygon, box);
+  for (int side = 0; side < 4 && cuts; ++side) {
+    cut(polygon, [&](const glm::dvec4& p) { return inside_by(box, p, side); });
+  }
   if (polygon.count < 3) return;
   std::array<glm::vec2, 12> corners;
   for (std::size_t i = 0; i < polygon.count; ++i) corners[i] = divided(polygon.corners[i]);
   for (std::size_t i = 2; i < polygon.count; ++i) {
     use(std::array<glm::vec2, 3>{corners[0], corners[i - 1], corners[i]});
   }
+}
+
+// To what lies in the box, as far as there is a polygon of it.
+void cut_to_view(WantedReceiver& wanted, const ClipBox& box, const ShadowView& view) {
+  CutPolygon<glm::dvec3> polygon;
+  for (const glm::dvec3& corner : wanted.corners_of_outline()) {
+    polygon.corners[polygon.count++] = corner;
+  }
+  for (int side = 0; side < 4; ++side) {
+    cut(polygon, [&](const glm::dvec3& p) {
+      return inside_by(box, to_clip(view.world_to_clip, {p, 1.0}), side);
+    });
+  }
+  if (polygon.count < 3 || polygon.count > wanted.outline.size()) return;
+  std::copy_n(polygon.corners.begin(), polygon.count, wanted.outline.begin());
+  wanted.corners = polygon.count;
 }
 
 // Triangles of a light on a receiver, few enough for a task.
@@ -310,6 +329,37 @@ void fill(const MaskWriter& to, const MaskTriangle& triangle, const Rectangle& p
 constexpr int kRowsOfMaskTask = 32;
 
 }  // namespace
+
+std::vector<WantedReceiver> seen_receivers(const Facets& facets,
+                                           std::span<const std::vector<SeenFacet>> layers,
+                                           const ShadowView& view) {
+  std::vector<Rectangle> seen(facets.receivers.size());
+  for (const std::vector<SeenFacet>& layer : layers) {
+    for (int y = 0; y < view.height; ++y) {
+      const SeenFacet* row =
+          layer.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width);
+      for (int begin = 0, end = 0; begin < view.width; begin = end) {
+        for (end = begin + 1; end < view.width && row[end] == row[begin]; ++end) {
+        }
+        if (!shows_facet(row[begin])) continue;
+        Rectangle& box = seen[facets.receiver_of[facet_of(row[begin])]];
+        const bool is_first = box.y_end == 0;
+        box = {is_first ? begin : std::min(box.x_begin, begin),
+               is_first ? y : std::min(box.y_begin, y), std::max(box.x_end, end),
+               std::max(box.y_end, y + 1)};
+      }
+    }
+  }
+  std::vector<WantedReceiver> wanted;
+  for (std::uint32_t r = 0; r < seen.size(); ++r) {
+    if (seen[r].y_end == 0) continue;
+    const Receiver& receiver = facets.receivers[r];
+    WantedReceiver& added = wanted.emplace_back(WantedReceiver{r, {}, receiver.corners});
+    std::copy_n(receiver.outline.begin(), receiver.corners, added.outline.begin());
+    if (receiver.corners == 4) cut_to_view(added, clip_box(seen[r], view), view);
+  }
+  return wanted;
+}
 
 MaskDraws cut_shadows(const Facets& facets, std::span<const ProjectedShadows* const> shadows,
                       std::span<const SeenFacet> seen, const ShadowView& view, ThreadPool& pool) {

@@ -57,6 +57,12 @@ struct MaskDraws {
   std::vector<Part> parts;
 };
 
+/// The receivers that any layer shows, in their order, each with little more of its outline than
+/// what the view shows.
+std::vector<WantedReceiver> seen_receivers(const Facets& facets,
+                                           std::span<const std::vector<SeenFacet>> layers,
+                                           const ShadowView& view);
+
 /// `seen` has rows from the top, without gaps. Bit i is that of the light of `shadows`[i], 8 at
 /// most; one whose shadows have no triangles has its dark sides alone, and null has no bits.
 MaskDraws cut_shadows(const Facets& facets, std::span<const ProjectedShadows* const> shadows,

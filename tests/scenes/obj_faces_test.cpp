@@ -19,7 +19,7 @@ using namespace softfocus::test;
 
 namespace {
 
-ObjModel model_of(std::string_view text) {
+Model model_of(std::string_view text) {
   const TemporaryDirectory directory;
   write_file(directory.file("a.obj"), text);
   return load_obj_model(directory.file("a.obj"));
@@ -37,8 +37,8 @@ TEST_CASE("a face that is there twice, perhaps reversed, is drawn once") {
     for (const std::string_view second : kQuads) {
       CAPTURE(first);
       CAPTURE(second);
-      const ObjModel alone = model_of(vertices + std::string(first));
-      const ObjModel model = model_of(vertices + std::string(first) + std::string(second));
+      const Model alone = model_of(vertices + std::string(first));
+      const Model model = model_of(vertices + std::string(first) + std::string(second));
       CHECK(model.parts[0].mesh.indices == alone.parts[0].mesh.indices);
       CHECK(model.parts[0].mesh.positions == alone.parts[0].mesh.positions);
       CHECK(model.parts[0].mesh.normals == alone.parts[0].mesh.normals);
@@ -129,7 +129,7 @@ TEST_CASE("corners that are alike share a vertex of their part, whatever lies be
       }
       text += "\n";
     }
-    const ObjModel model = model_of(text);
+    const Model model = model_of(text);
     REQUIRE(model.parts.size() == 2);
     for (std::size_t part = 0; part < 2; ++part) {
       CHECK(model.parts[part].mesh.indices == indices[part]);

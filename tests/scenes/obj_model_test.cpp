@@ -30,7 +30,7 @@ std::string complaint(std::string_view text) {
 }
 
 // The model of a text, and of a library if one is given.
-ObjModel load(std::string_view obj, std::string_view mtl = "") {
+Model load(std::string_view obj, std::string_view mtl = "") {
   const TemporaryDirectory directory;
   write_file(directory.file("a.obj"), obj);
   if (!mtl.empty()) write_file(directory.file("a.mtl"), mtl);
@@ -268,7 +268,7 @@ TEST_CASE("numbers that are none refuse no model where they are not needed") {
   REQUIRE(obj.warnings.size() == 2);
   CHECK(contains(obj.warnings[0], "a.obj:4: 2 texture coordinates are out of range"));
   CHECK(contains(obj.warnings[1], "a.obj:6: 2 normals are no directions"));
-  const ObjModel model = load(triangle_with("vn nan nan nan\nf 1//1 2//1 3//1\n"));
+  const Model model = load(triangle_with("vn nan nan nan\nf 1//1 2//1 3//1\n"));
   CHECK(model.parts[0].mesh.normals[0] == glm::vec3{0.0f, 0.0f, 1.0f});
 }
 
@@ -287,7 +287,7 @@ TEST_CASE("a model may be UTF-16 of either byte order") {
   };
   const std::string text = triangle_with("mtllib a.mtl\nusemtl m\nf 1 2 3\n");
   for (const bool high_byte_first : {false, true}) {
-    const ObjModel model =
+    const Model model =
         load(utf16(text, high_byte_first), utf16("newmtl m\nKd 1 0 0\n", high_byte_first));
     CHECK(model.materials[model.parts[0].material].diffuse == glm::vec3{1.0f, 0.0f, 0.0f});
   }
@@ -297,7 +297,7 @@ TEST_CASE("vertex colours come with the mesh, from 0 to 1 or to 255") {
   for (const auto& [scale, text] :
        {std::pair{1.0f, "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0\nf 1 2 3\n"},
         {255.0f, "v 0 0 0 255 0 0\nv 1 0 0 0 255 0\nv 0 1 0 255 255 255\nf 1 2 3\n"}}) {
-    const ObjModel model = load(text);
+    const Model model = load(text);
     const auto& colours = model.parts[0].mesh.colours;
     REQUIRE(colours.size() == 3);
     CHECK(colours[0] == glm::vec3{1.0f, 0.0f, 0.0f});
@@ -313,7 +313,7 @@ TEST_CASE("a model far from the origin has the bits of the same one there, and k
   const std::string far =
       "v 446521.875 5572094 -18\nv 446522.375 5572094.25 -18\nv 446522 5572095.5 -17.25\n"
       "f 1 2 3\n";
-  const ObjModel model = load(far);
+  const Model model = load(far);
   CHECK(model.origin == glm::dvec3{446522.0, 5572095.0, -18.0});
   REQUIRE(model.warnings.size() == 1);
   CHECK(contains(model.warnings[0], "(446522, 5572095, -18) is subtracted"));
@@ -383,7 +383,7 @@ TEST_CASE("damaged text gives a complaint or a model, and nothing else") {
       const TemporaryDirectory directory;
       write_file(directory.file("a.obj"), text);
       const std::string message = scene_error_of([&] {
-        const ObjModel model = load_obj_model(directory.file("a.obj"));
+        const Model model = load_obj_model(directory.file("a.obj"));
         for (const auto& part : model.parts) {
           for (const std::uint32_t index : part.mesh.indices) {
             CHECK_UNARY(index < part.mesh.positions.size());
@@ -398,7 +398,7 @@ TEST_CASE("damaged text gives a complaint or a model, and nothing else") {
 // --- the mesh -------------------------------------------------------------------------
 
 TEST_CASE("a cube of quadrilaterals is a closed mesh of twelve triangles") {
-  const ObjModel model = load(kCube);
+  const Model model = load(kCube);
   REQUIRE(model.parts.size() == 1);
   const Mesh& mesh = model.parts[0].mesh;
   CHECK(mesh.indices.size() == 36);
@@ -489,13 +489,13 @@ TEST_CASE("triangles without area are left out, and a model of nothing else is r
 }
 
 TEST_CASE("a model without a library is neutral grey, with no complaint") {
-  const ObjModel model = load(kCube);
+  const Model model = load(kCube);
   CHECK(model.materials[model.parts[0].material].diffuse == glm::vec3{0.5f});
   CHECK(model.warnings.empty());
 }
 
 TEST_CASE("a model is split by material, in the order of first use") {
-  const ObjModel model =
+  const Model model =
       load(triangle_with("v 0 0 1\nmtllib a.mtl\nusemtl blue\nf 1 2 3\nusemtl red\n"
                          "f 2 3 4\nusemtl blue\nf 3 1 4\n"),
            "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n");
@@ -529,7 +529,7 @@ TEST_CASE("a model of 100,000 triangles keeps its triangles and shares its verti
   }
   const TemporaryDirectory directory;
   write_file(directory.file("a.obj"), text);
-  const ObjModel model = load_obj_model(directory.file("a.obj"));
+  const Model model = load_obj_model(directory.file("a.obj"));
   CHECK(model.parts[0].mesh.indices.size() == 3 * 2 * kSide * kSide);
   CHECK(model.parts[0].mesh.positions.size() == (kSide + 1) * (kSide + 1));
 }

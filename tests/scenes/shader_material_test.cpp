@@ -131,6 +131,23 @@ TEST_CASE("a built-in scene by our own shaders has the bits of the built-in surf
   }
 }
 
+TEST_CASE("a triangle in shadow has its number in the draw") {
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const Files files;
+  files.write("number.frag",
+              "#version 330\nout vec4 c;\nvoid main() { c = vec4(gl_PrimitiveID); }\n");
+  Scene scene = files.read(
+      "[camera]\nposition = [1, 2, 3]\ntarget = [0, 0, 0]\n[lens]\nfocus_m = 3\n"
+      "[[light]]\nkind = \"directional\"\ndirection = [1, 1, -1]\nshadows = \"projected\"\n"
+      "[material.m]\nfragment = \"number.frag\"\n"
+      "[[object]]\nshape = \"sphere\"\nradius = 1\nmaterial = \"m\"\n");
+  ThreadPool pool{1};
+  const CameraMatrices camera = camera_matrices(scene.camera, 0.0, 60, 60);
+  const Image in_shadow = draw_scene(scene, camera, 0.0, 60, 60, {}, pool);
+  scene.lights.clear();
+  CHECK(in_shadow.bytes == draw_scene(scene, camera, 0.0, 60, 60, {}, pool).bytes);
+}
+
 TEST_CASE("alpha is the depth, and a discarded pixel shows what is behind") {
   if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
   const Files files;

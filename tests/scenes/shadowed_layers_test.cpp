@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <set>
 #include <span>
@@ -139,6 +140,58 @@ TEST_CASE("shadows lie on the surfaces behind the first, too") {
   Scene unshadowed = scene;
   set_shadows(unshadowed, ShadowKind::none);
   CHECK_FALSE(equal(layers[1], draw_layers(unshadowed, camera, kFrame, 150, 97, 2, {}, pool)[1]));
+}
+
+namespace {
+
+// How many pixels of layers lie in shadow. Each must have the bits that it has without the lights
+// that its mask names.
+std::size_t check_masked_pixels(const Scene& scene, std::size_t layers) {
+  constexpr int kWidth = 96, kHeight = 72;
+  ThreadPool pool{2};
+  const CameraMatrices camera = camera_matrices(scene.camera, 0.0, kWidth, kHeight);
+  PreparedScene prepared = prepare_scene(scene, {}, pool);
+  std::vector<Image> pictures(layers, make_image(Format::rgba16f, kWidth, kHeight));
+  draw_layers(prepared, camera, 0.0, pictures[0], std::span{pictures}.subspan(1), pool);
+  std::size_t in_shadow = 0;
+  for (std::uint8_t of = 1; of < 4; ++of) {
+    Scene without = scene;
+    without.lights.clear();
+    for (std::size_t i = 0; i < 2; ++i) {
+      if ((of >> i & 1) == 0) without.lights.push_back(scene.lights[i]);
+    }
+    set_shadows(without, ShadowKind::none);
+    const std::vector<Image> expected =
+        draw_layers(without, camera, 0.0, kWidth, kHeight, layers, {}, pool);
+    for (std::size_t layer = 0; layer < layers; ++layer) {
+      for (int y = 0; y < kHeight; ++y) {
+        for (int x = 0; x < kWidth; ++x) {
+          const auto at = static_cast<std::size_t>(y * kWidth + x);
+          if (prepared.shadows->masks[layer][at] != of) continue;
+          ++in_shadow;
+          REQUIRE(texel_bits(pictures[layer], x, y) == texel_bits(expected[layer], x, y));
+        }
+      }
+    }
+  }
+  return in_shadow;
+}
+
+}  // namespace
+
+TEST_CASE("a pixel of any layer in shadow has the bits that it has without the light") {
+  Scene scene = test::shadow_scene(ShadowKind::projected);
+  CHECK(check_masked_pixels(scene, 3) > 1000);
+  // Shadows that nothing in the first layer shows: the ball and the ground behind a pane before
+  // the eye, that is lit by all lights.
+  Object pane = scene.objects[1];
+  pane.scale = {9.0, 0.001, 9.0};
+  pane.position = {0.5, 1.5, 3.0};
+  pane.rotation_degrees = {45, 0, 0};
+  scene.objects.push_back(pane);
+  scene.lights[0].position_or_direction = {0.6f, 1.0f, 1.5f};
+  scene.lights[1].position_or_direction = {-1.0f, 1.2f, 0.4f};
+  CHECK(check_masked_pixels(scene, 3) > 1000);
 }
 
 TEST_CASE("a scene without shadows is prepared without any") {
@@ -323,8 +376,76 @@ TEST_CASE("what is kept of shadows changes no bit, whatever moves from frame to 
       check();
       frame = 0.0;
       check();
+      // A part of the ground alone, then all of it.
+      for (const double degrees : {6.0, 60.0}) {
+        scene.camera.fov_y_degrees = degrees;
+        scene.lights[0].position_or_direction.x -= 0.2f;
+        scene.lights[1].position_or_direction.z -= 0.3f;
+        check();
+      }
     }
   }
+}
+
+TEST_CASE("of a receiver is wanted what the view shows of it, and little more") {
+  constexpr int kWidth = 96, kHeight = 72;
+  Scene scene = test::shadow_scene(ShadowKind::projected);
+  scene.camera.fov_y_degrees = 20.0;  // the ground goes on beyond the picture
+  ThreadPool pool{2};
+  const CameraMatrices camera = camera_matrices(scene.camera, 0.0, kWidth, kHeight);
+  PreparedScene prepared = prepare_scene(scene, Profile{}, pool);
+  Image picture = make_image(Format::rgba16f, kWidth, kHeight);
+  draw_scene(prepared, camera, 0.0, picture, pool);
+  const SceneShadows& shadows = *prepared.shadows;
+  REQUIRE(shadows.wanted);
+  const auto area = [](std::span<const glm::dvec3> outline) {
+    glm::dvec3 sum{0.0};
+    for (std::size_t i = 2; i < outline.size(); ++i) {
+      sum += cross(outline[i - 1] - outline[0], outline[i] - outline[0]) * 0.5;
+    }
+    return std::sqrt(dot(sum, sum));
+  };
+  const PixelRays rays = pixel_rays(camera, kWidth, kHeight);
+  std::set<std::uint32_t> seen;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const SeenFacet facet = shadows.seen[0][static_cast<std::size_t>(y * kWidth + x)];
+      if (!shows_facet(facet)) continue;
+      const std::uint32_t number = shadows.facets.receiver_of[facet_of(facet)];
+      seen.insert(number);
+      const auto wanted =
+          std::find_if(shadows.wanted->begin(), shadows.wanted->end(),
+                       [&](const WantedReceiver& w) { return w.receiver == number; });
+      REQUIRE(wanted != shadows.wanted->end());
+      const FacetPlane& plane = shadows.facets.receivers[number].plane;
+      const glm::dvec3 ray = rays.at(x, y);
+      const glm::dvec3 p =
+          camera.eye - ray * (height_over(plane, camera.eye) / dot(plane.normal, ray));
+      const std::span<const glm::dvec3> outline = wanted->corners_of_outline();
+      for (std::size_t i = 0; i < outline.size(); ++i) {
+        const glm::dvec3 a = outline[i], b = outline[(i + 1) % outline.size()];
+        REQUIRE(dot(plane.normal, cross(b - a, p - a)) > -1e-6);
+      }
+    }
+  }
+  CHECK(seen.size() == shadows.wanted->size());
+  const glm::dmat4 to_clip = multiply(camera.eye_to_clip, camera.world_to_eye);
+  for (const WantedReceiver& wanted : *shadows.wanted) {
+    if (shadows.facets.receivers[wanted.receiver].corners != 4) continue;
+    for (const glm::dvec3& p : wanted.corners_of_outline()) {
+      const glm::dvec4 clip =
+          ((to_clip[0] * p.x + to_clip[1] * p.y) + to_clip[2] * p.z) + to_clip[3];
+      CHECK(clip.w > 0.0);
+      CHECK(std::max(std::fabs(clip.x), std::fabs(clip.y)) <= clip.w * (1.0 + 1e-9));
+    }
+  }
+  const std::uint32_t ground = shadows.facets.receiver_of[0];
+  const auto of_ground =
+      std::find_if(shadows.wanted->begin(), shadows.wanted->end(),
+                   [&](const WantedReceiver& w) { return w.receiver == ground; });
+  REQUIRE(of_ground != shadows.wanted->end());
+  CHECK(area(of_ground->corners_of_outline()) <
+        0.5 * area(shadows.facets.receivers[ground].corners_of_outline()));
 }
 
 TEST_CASE("objects that something else is drawn for are no facets that take shadows") {

@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <vector>
@@ -152,6 +154,17 @@ TEST_CASE("walls of a corner cast nothing on each other, turned and rounded to b
   }
 }
 
+namespace {
+
+WantedReceiver whole(const Facets& facets, std::uint32_t receiver) {
+  const Receiver& of = facets.receivers[receiver];
+  WantedReceiver wanted{receiver, {}, of.corners};
+  std::copy_n(of.outline.begin(), of.corners, wanted.outline.begin());
+  return wanted;
+}
+
+}  // namespace
+
 TEST_CASE("all schedules give the same bits") {
   for (std::uint32_t seed = 1; seed < 5; ++seed) {
     const Facets facets = facet_soup(seed, 300, 0.3);
@@ -174,20 +187,19 @@ TEST_CASE("a floor under thousands of casters, which threads share, has the bits
   std::vector<Facet> corners = soup.facets;
   add_quad(corners, {-9, -2, 9}, {9, -2, 9}, {9, -2, -9}, {-9, -2, -9});
   const Facets facets = make_facets(std::move(corners));
-  const std::size_t floor = facets.receiver_of[kCasters];
+  const std::uint32_t floor = facets.receiver_of[kCasters];
   const ShadowLight light = kLights[0];
   ThreadPool pool{3}, one{1};
   // The other receivers are thousands, too many for every caster against each.
-  std::vector<std::uint8_t> wanted(facets.receivers.size());
-  wanted[floor] = 1;
-  const ProjectedShadows by_grid = project_by_grid(facets, light, pool, wanted);
+  const std::array wanted{whole(facets, floor)};
+  const ProjectedShadows by_grid = project_onto(wanted, facets, light, pool);
   std::size_t casters = 0;
   for (std::size_t i = 0; i < kCasters; ++i) {
     casters += stops_light(facets.facets[i], facets.planes[i], light) ? 1 : 0;
   }
   CHECK(casters > 4096);
   CHECK(by_grid.triangles.size() == casters);  // none is cut, all lie above it
-  CHECK(same(by_grid, project_by_grid(facets, light, one, wanted)));
+  CHECK(same(by_grid, project_onto(wanted, facets, light, one)));
   // In the casters' order: each triangle's middle lies under its caster, as the light falls.
   std::size_t at = by_grid.begins[floor];
   for (std::size_t i = 0; i < kCasters; ++i) {
@@ -202,22 +214,76 @@ TEST_CASE("a floor under thousands of casters, which threads share, has the bits
 
 TEST_CASE("receivers that nobody wants get no triangles, the others what they had") {
   const Facets facets = facet_soup(2, 300, 0.3);
+  const auto receivers = static_cast<std::uint32_t>(facets.receivers.size());
   ThreadPool pool{2};
   for (const ShadowLight& light : kLights) {
     const ProjectedShadows all = project_by_grid(facets, light, pool);
-    std::vector<std::uint8_t> wanted(facets.receivers.size());
-    for (std::size_t r = 0; r < wanted.size(); ++r) wanted[r] = r % 3 == 1 ? 1 : 0;
-    const ProjectedShadows some = project_by_grid(facets, light, pool, wanted);
     CHECK(all.of_all);
-    CHECK(!some.of_all);
-    CHECK(some.lit == all.lit);
-    for (std::size_t r = 0; r < wanted.size(); ++r) {
-      const std::size_t count = some.begins[r + 1] - some.begins[r];
-      REQUIRE(count == (wanted[r] != 0 ? all.begins[r + 1] - all.begins[r] : 0));
-      for (std::size_t i = 0; i < count; ++i) {
-        REQUIRE(some.triangles[some.begins[r] + i] == all.triangles[all.begins[r] + i]);
+    // Of few the grid has the cells that they look at alone.
+    for (const std::uint32_t step : {3u, 7u, 40u}) {
+      CAPTURE(step);
+      std::vector<WantedReceiver> wanted;
+      for (std::uint32_t r = 1; r < receivers; r += step) wanted.push_back(whole(facets, r));
+      const ProjectedShadows some = project_onto(wanted, facets, light, pool);
+      CHECK(!some.of_all);
+      CHECK(some.lit == all.lit);
+      for (std::size_t r = 0; r < receivers; ++r) {
+        const std::size_t count = some.begins[r + 1] - some.begins[r];
+        REQUIRE(count == (r % step == 1 ? all.begins[r + 1] - all.begins[r] : 0));
+        for (std::size_t i = 0; i < count; ++i) {
+          REQUIRE(some.triangles[some.begins[r] + i] == all.triangles[all.begins[r] + i]);
+        }
       }
     }
+  }
+}
+
+TEST_CASE("a part of a floor gets the shadows that touch it, and few others") {
+  std::vector<Facet> corners = facet_soup(3, 400, 0.1).facets;
+  add_quad(corners, {-9, -2, 9}, {9, -2, 9}, {9, -2, -9}, {-9, -2, -9});
+  const Facets facets = make_facets(std::move(corners));
+  WantedReceiver part = whole(facets, facets.receiver_of[400]);
+  // Eight corners around the middle, none of which is one of the floor's.
+  for (std::size_t i = 0; i < 8; ++i) {
+    const double angle = 0.3 + 0.785398 * static_cast<double>(i);
+    part.outline[i] = {0.4 * std::cos(angle), -2, 0.4 * std::sin(angle)};
+  }
+  part.corners = 8;
+  const auto inside = [&](glm::dvec3 p) {
+    for (std::size_t i = 0; i < 8; ++i) {
+      const glm::dvec3 a = part.outline[i], b = part.outline[(i + 1) % 8];
+      if ((b.x - a.x) * (p.z - a.z) - (b.z - a.z) * (p.x - a.x) < 0.0) return false;
+    }
+    return true;
+  };
+  const auto touches = [&](const ProjectedTriangle& shadow) {
+    constexpr int kSteps = 24;
+    for (int i = 0; i <= kSteps; ++i) {
+      for (int k = 0; i + k <= kSteps; ++k) {
+        const double s = double(i) / kSteps, t = double(k) / kSteps;
+        const glm::dvec4 p = shadow[0] * (1.0 - s - t) + shadow[1] * s + shadow[2] * t;
+        if (p.w > 0.0 && inside(glm::dvec3{p} / p.w)) return true;
+      }
+    }
+    return false;
+  };
+  ThreadPool pool{2};
+  for (const ShadowLight& light :
+       {ShadowLight{normalize(glm::dvec3{0.3, 1, 0.2}), 0.0}, ShadowLight{{0.5, 6, 1}, 1.0}}) {
+    const ProjectedShadows all = project_by_grid(facets, light, pool);
+    const ProjectedShadows some = project_onto({&part, 1}, facets, light, pool);
+    std::size_t kept = 0, touching = 0;
+    for (std::size_t i = all.begins[part.receiver]; i < all.begins[part.receiver + 1]; ++i) {
+      const bool is_kept = kept < some.triangles.size() && some.triangles[kept] == all.triangles[i];
+      kept += is_kept ? 1 : 0;
+      const bool does_touch = touches(all.triangles[i]);
+      touching += does_touch ? 1 : 0;
+      REQUIRE((is_kept || !does_touch));
+    }
+    CHECK(kept == some.triangles.size());
+    CHECK(touching > 10);
+    CHECK(kept < touching + touching / 4 + 4);
+    CHECK(all.triangles.size() > 2 * kept);
   }
 }
 
