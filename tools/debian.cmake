@@ -68,7 +68,7 @@ set(CPACK_DEBIAN_LIBSOFTFOCUS_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/debian
 file(READ ${PROJECT_SOURCE_DIR}/LICENSE copyright)
 string(APPEND copyright "\nParts of these libraries are compiled into softfocus:\n")
 foreach(library libglm-dev libtinyobjloader-dev libstb-dev libtomlplusplus-dev libcli11-dev
-        nlohmann-json3-dev)
+        nlohmann-json3-dev libtinygltf-dev)
   if(EXISTS /usr/share/doc/${library}/copyright)
     file(READ /usr/share/doc/${library}/copyright text)
     string(APPEND copyright "\n--- ${library} ---\n\n${text}")

@@ -1,5 +1,6 @@
 #include "scenes/files/file_bytes.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <cstdlib>
@@ -107,6 +108,14 @@ std::string read_file_text(const std::filesystem::path& file, std::size_t larges
   if (bytes.starts_with("\xFF\xFE")) return utf8_of_utf16(bytes.substr(2), false);
   if (bytes.starts_with("\xFE\xFF")) return utf8_of_utf16(bytes.substr(2), true);
   return text;
+}
+
+bool has_extension(std::string_view path, std::string_view extension) {
+  if (path.size() < extension.size()) return false;
+  const std::string_view end = path.substr(path.size() - extension.size());
+  return std::equal(end.begin(), end.end(), extension.begin(), [](char a, char b) {
+    return (a >= 'A' && a <= 'Z' ? static_cast<char>(a - 'A' + 'a') : a) == b;
+  });
 }
 
 void* zeroed_memory(std::size_t size) { return std::calloc(1, size); }

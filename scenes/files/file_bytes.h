@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace softfocus {
 
@@ -17,6 +18,9 @@ void check_no_pipe(const std::filesystem::path& file);
 /// A file of text as UTF-8: without a byte order mark, and from UTF-16 of either byte order if its
 /// mark says so. Throws as read_file_bytes() and check_no_pipe().
 std::string read_file_text(const std::filesystem::path& file, std::size_t largest);
+
+/// Whether a path ends so, in letters of either case: ".obj". ASCII only, and no locale's.
+bool has_extension(std::string_view path, std::string_view extension);
 
 /// Zeros, for std::free(), or null: what a decoder fills, so that what a damaged file leaves unset
 /// is the same each time.

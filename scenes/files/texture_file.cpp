@@ -26,10 +26,8 @@
 namespace softfocus {
 namespace {
 
-constexpr std::size_t kMaxTextureBytes = std::size_t{1} << 28;
-
-[[noreturn]] void fail(const std::filesystem::path& file, const std::string& reason) {
-  throw SceneError(file.string() + ": " + reason);
+[[noreturn]] void fail(const std::string& name, const std::string& reason) {
+  throw SceneError(name + ": " + reason);
 }
 
 std::string stb_reason() {
@@ -41,40 +39,43 @@ std::string stb_reason() {
 
 Texture load_texture(const std::filesystem::path& file) {
   check_no_pipe(file);
-  const std::string bytes = read_file_bytes(file, kMaxTextureBytes);
+  return texture_of_bytes(read_file_bytes(file, kMaxTextureBytes), file.string());
+}
+
+Texture texture_of_bytes(const std::string& bytes, const std::string& name) {
   const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
   const int size = static_cast<int>(bytes.size());
 
   if (has_overfull_huffman_table(bytes)) {
-    fail(file,
+    fail(name,
          "is damaged (a Huffman table of more than 256 codes); a complete PNG or JPEG file "
          "would do");
   }
   if (lacks_huffman_table(bytes)) {
-    fail(file,
+    fail(name,
          "is damaged (a scan without its Huffman table); a complete PNG or JPEG file would do");
   }
   if (has_cut_png_chunk(bytes)) {
-    fail(file, "is damaged (a chunk goes on past the end); a complete PNG or JPEG file would do");
+    fail(name, "is damaged (a chunk goes on past the end); a complete PNG or JPEG file would do");
   }
   int width = 0;
   int height = 0;
   int channels = 0;
   if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) {
-    fail(file, "not a picture that can be read (" + stb_reason() +
+    fail(name, "not a picture that can be read (" + stb_reason() +
                    "); a PNG or JPEG file of up to " + std::to_string(kMaxImageSize) +
                    " texels along a side would do");
   }
   if (width < 1 || height < 1 || width > kMaxImageSize || height > kMaxImageSize ||
       static_cast<std::int64_t>(width) * height > kMaxTextureTexels) {
-    fail(file, "is " + std::to_string(width) + "x" + std::to_string(height) + " texels; up to " +
+    fail(name, "is " + std::to_string(width) + "x" + std::to_string(height) + " texels; up to " +
                    std::to_string(kMaxImageSize) + " along a side and " +
                    std::to_string(kMaxTextureTexels) + " in all would do");
   }
   const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> texels{
       stbi_load_from_memory(data, size, &width, &height, &channels, 4), &stbi_image_free};
   if (texels == nullptr || is_cut_jpeg(bytes)) {
-    fail(file, "is damaged (" + (texels == nullptr ? stb_reason() : "its end is missing") +
+    fail(name, "is damaged (" + (texels == nullptr ? stb_reason() : "its end is missing") +
                    "); a complete PNG or JPEG file would do");
   }
 

@@ -1,7 +1,9 @@
 #pragma once
 // Textures from PNG and JPEG files.
 
+#include <cstddef>
 #include <filesystem>
+#include <string>
 
 #include "raster/images/sampler.h"
 
@@ -12,6 +14,12 @@ namespace softfocus {
 /// SceneError for what is no PNG or JPEG, is damaged, or has more than kMaxImageSize
 /// texels along a side or kMaxTextureTexels in all.
 Texture load_texture(const std::filesystem::path& file);
+
+/// The same of a file's bytes; `name` is for errors.
+Texture texture_of_bytes(const std::string& bytes, const std::string& name);
+
+/// Of a file.
+inline constexpr std::size_t kMaxTextureBytes = std::size_t{1} << 28;
 
 /// 8192 x 8192, a quarter of a gigabyte: a small file can claim any size.
 inline constexpr int kMaxTextureTexels = 1 << 26;

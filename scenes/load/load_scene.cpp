@@ -10,7 +10,6 @@
 #include "scenes/files/file_bytes.h"
 #include "scenes/files/scene_error.h"
 #include "scenes/load/model_scene.h"
-#include "scenes/load/obj_model.h"
 #include "scenes/load/scene_sections.h"
 #include "scenes/load/toml_reading.h"
 #include "scenes/parameters.h"
@@ -269,21 +268,13 @@ std::string read_scene_title(const std::filesystem::path& file) {
 
 namespace {
 
-// ASCII only: an extension's case, and no locale's.
-bool has_extension(std::string_view path, std::string_view extension) {
-  if (path.size() < extension.size()) return false;
-  const std::string_view end = path.substr(path.size() - extension.size());
-  return std::equal(end.begin(), end.end(), extension.begin(), [](char a, char b) {
-    return (a >= 'A' && a <= 'Z' ? static_cast<char>(a - 'A' + 'a') : a) == b;
-  });
-}
-
 [[noreturn]] void fail_unknown(std::string_view name, const std::vector<SceneListing>& listings) {
   std::error_code unreadable;
   if (std::filesystem::exists(name, unreadable)) {
-    throw SceneError(std::string{name} +
-                     ": scenes are .toml files and models .obj files; Blender, MeshLab and assimp "
-                     "write others as .obj");
+    throw SceneError(
+        std::string{name} +
+        ": scenes are .toml files and models .gltf, .glb and .obj files; Blender, MeshLab "
+        "and assimp write others so");
   }
   std::vector<std::string> there;
   std::string names;
@@ -291,11 +282,12 @@ bool has_extension(std::string_view path, std::string_view extension) {
     there.push_back(listing.name);
     names += (names.empty() ? "" : ", ") + listing.name;
   }
-  throw SceneError("there is no scene \"" + std::string(name) + "\"" +
-                   (names.empty() ? "; no scenes were found at all: give a .toml or .obj file"
-                                  : "; there are " + names +
-                                        ", random:SEED, and any .toml or .obj file can be given") +
-                   did_you_mean(name, there));
+  throw SceneError(
+      "there is no scene \"" + std::string(name) + "\"" +
+      (names.empty() ? "; no scenes were found at all: give a .toml, .glb or .obj file"
+                     : "; there are " + names +
+                           ", random:SEED, and any .toml, .gltf, .glb or .obj file can be given") +
+      did_you_mean(name, there));
 }
 
 constexpr std::string_view kRandom = "random:";
@@ -323,8 +315,8 @@ Scene load_scene(std::string_view scene, const std::vector<std::filesystem::path
   if (is_random_scene(scene)) return make_random_scene(read_seed(scene), pool);
   const std::filesystem::path file{scene};
   if (has_extension(scene, ".toml")) return read_scene_file(file, pool);
-  if (has_extension(scene, ".obj")) {
-    return make_model_scene(load_obj_model(file, pool), file.stem().string());
+  if (is_model_name(scene)) {
+    return make_model_scene(load_model(file, pool), file.stem().string());
   }
   const auto listings = list_scenes(search_path);
   const auto found = std::find_if(listings.begin(), listings.end(),

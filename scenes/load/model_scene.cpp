@@ -2,12 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <iomanip>
 #include <limits>
 #include <sstream>
 
 #include "raster/numbers/exact_math.h"
 #include "raster/numbers/vector_math.h"
+#include "scenes/files/file_bytes.h"
+#include "scenes/files/scene_error.h"
+#include "scenes/load/gltf_model.h"
+#include "scenes/load/obj_model.h"
 
 namespace softfocus {
 namespace {
@@ -101,6 +106,24 @@ void fit_camera(Scene& scene) {
   camera.far_m = distance * 10.0;
 }
 
+double depth_of(const Camera& camera, glm::dvec3 p) {
+  return dot(p - camera.position, normalize(camera.target - camera.position));
+}
+
+// For a camera of the file's, which may stand in the model: all that is before it, to a
+// 10,000th of the farthest.
+void set_near_and_far(Scene& scene) {
+  Camera& camera = scene.camera;
+  double farthest = 0.0, nearest = std::numeric_limits<double>::infinity();
+  for_each_position(scene, [&](glm::dvec3 p) {
+    const double z = depth_of(camera, p);
+    farthest = std::max(farthest, z);
+    if (z > 0.0) nearest = std::min(nearest, z);
+  });
+  camera.far_m = farthest > 0.0 ? 1.5 * farthest : 100.0;
+  camera.near_m = std::max(std::min(nearest, camera.far_m) * 0.5, camera.far_m * 1e-4);
+}
+
 void fit_lens(Scene& scene) {
   const Camera& camera = scene.camera;
   const glm::dvec3 way = camera.target - camera.position;
@@ -113,7 +136,8 @@ void fit_lens(Scene& scene) {
   // that is a tenth of its distance deep.
   double largest = 0.1 / focus;
   for_each_position(scene, [&](glm::dvec3 p) {
-    const double z = dot(p - camera.position, forwards);
+    // Before a camera that stands in the model, an eighth of the focus is the nearest.
+    const double z = std::max(depth_of(camera, p), focus / 8.0);
     largest = std::max(largest, std::fabs(1.0 / focus - 1.0 / z));
   });
   const double pixels = 1024.0 / (2.0 * exact_math::tan_degrees(camera.fov_y_degrees / 2.0));
@@ -127,12 +151,22 @@ void fit_lens(Scene& scene) {
 
 }  // namespace
 
-void add_model(Scene& scene, ObjModel model, const Object& placement,
+bool is_model_name(std::string_view name) {
+  return has_extension(name, ".gltf") || has_extension(name, ".glb") || has_extension(name, ".obj");
+}
+
+Model load_model(const std::filesystem::path& file, ThreadPool* pool) {
+  const std::string name = file.string();
+  const bool is_gltf = has_extension(name, ".gltf") || has_extension(name, ".glb");
+  return is_gltf ? load_gltf_model(file) : load_obj_model(file, pool);
+}
+
+void add_model(Scene& scene, Model model, const Object& placement,
                std::optional<std::uint32_t> material) {
   const auto first_material = static_cast<std::uint32_t>(scene.materials.size());
   const auto first_texture = static_cast<std::uint32_t>(scene.textures.size());
   const auto number = static_cast<std::uint32_t>(scene.objects.size() + 1);
-  for (ObjModel::Part& part : model.parts) {
+  for (Model::Part& part : model.parts) {
     Object object = placement;
     object.model = number;
     object.mesh = static_cast<std::uint32_t>(scene.meshes.size());
@@ -154,7 +188,27 @@ void add_model(Scene& scene, ObjModel model, const Object& placement,
   scene.files.insert(scene.files.end(), model.files.begin(), model.files.end());
 }
 
-Scene make_model_scene(ObjModel model, const std::string& name) {
+glm::dvec3 far_middle(glm::dvec3 low, glm::dvec3 high) {
+  constexpr double kFar = 64.0;  // halves of the size
+  const glm::dvec3 half = (high - low) / 2.0;
+  const glm::dvec3 middle = (low + high) / 2.0;
+  const double size = std::max({half.x, half.y, half.z});
+  const double away = std::max({std::fabs(middle.x), std::fabs(middle.y), std::fabs(middle.z)});
+  if (!(away > kFar * size && away > kFar)) return glm::dvec3{0.0};
+  return {std::round(middle.x), std::round(middle.y), std::round(middle.z)};
+}
+
+std::string far_warning(const std::filesystem::path& file, glm::dvec3 subtracted) {
+  std::string text = "(";
+  for (int axis = 0; axis < 3; ++axis) {
+    text.append(axis == 0 ? "" : ", ")
+        .append(std::to_string(static_cast<std::int64_t>(subtracted[axis])));
+  }
+  return printable(file.string()) + ": is far from the origin for its size; " + text +
+         ") is subtracted from its positions";
+}
+
+Scene make_model_scene(Model model, const std::string& name) {
   Scene scene;
   scene.name = name;
   scene.title = name;
@@ -164,9 +218,16 @@ Scene make_model_scene(ObjModel model, const std::string& name) {
       {LightKind::directional, {-0.5f, 0.9f, 0.8f}, {1.05f, 1.0f, 0.92f}},
       {LightKind::directional, {1.0f, 0.25f, 0.35f}, {0.25f, 0.28f, 0.34f}},
   };
+  if (!model.lights.empty()) scene.lights = model.lights;
   model.origin = glm::dvec3{0.0};
+  const std::optional<Camera> camera = model.camera;
   add_model(scene, std::move(model), Object{}, std::nullopt);
-  fit_camera(scene);
+  if (camera) {
+    scene.camera = *camera;
+    set_near_and_far(scene);
+  } else {
+    fit_camera(scene);
+  }
   fit_lens(scene);
   const SceneLens& lens = scene.lens;
   const auto rounded = [](double value) {

@@ -2,18 +2,27 @@
 // A model in a scene, and a model that is given as the scene itself.
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 
-#include "scenes/load/obj_model.h"
+#include "raster/threads/parallel.h"
+#include "scenes/load/model.h"
 #include "scenes/scene.h"
 
 namespace softfocus {
 
+/// Whether a name is a model's file: ".gltf", ".glb", ".obj".
+bool is_model_name(std::string_view name);
+
+/// load_gltf_model() or load_obj_model(), by the end of the name.
+Model load_model(const std::filesystem::path& file, ThreadPool* pool);
+
 /// Puts each part of the model where `placement` says, with its own materials or all
 /// of `material`. The model's warnings and files
 /// become the scene's.
-void add_model(Scene& scene, ObjModel model, const Object& placement,
+void add_model(Scene& scene, Model model, const Object& placement,
                std::optional<std::uint32_t> material);
 
 /// A scene for a model that comes without one, whatever its unit of length:
@@ -25,7 +34,8 @@ void add_model(Scene& scene, ObjModel model, const Object& placement,
 ///           much larger or smaller that the point of the model farthest out of focus has one
 ///           of kModelCocPx, whatever the model's size
 ///   light   a key from the upper left, a weak fill from the right, neutral grey behind
-Scene make_model_scene(ObjModel model, const std::string& name);
+/// A camera and lights of the model's own stand in for these.
+Scene make_model_scene(Model model, const std::string& name);
 
 /// Radius in pixels of a picture of 1024 rows.
 inline constexpr double kModelCocPx = 12.0;

@@ -175,7 +175,7 @@ std::vector<glm::vec3> complete_normals(const ObjText& obj,
 
 // A part that is being filled: corners that are equal share a vertex.
 struct GrowingPart {
-  ObjModel::Part part;
+  Model::Part part;
   FirstComeNumbers corners;              // of positions that have several vertices
   std::vector<std::uint32_t> vertex_of;  // by their numbers
   bool has_uvs = false;
@@ -284,10 +284,8 @@ void check_size(const std::vector<ObjTriangle>& triangles, const ObjText& obj,
                    ": no face has an area; a model at least 1e-9 across would be right");
 }
 
-// The middle of the corners, in whole units, where it is so far from the origin that binary32 would
-// lose more than six bits of the model; else the origin.
-glm::dvec3 far_middle(const ObjText& obj) {
-  constexpr double kFar = 64.0;  // halves of the size
+// As far_middle() of the corners.
+glm::dvec3 middle_of(const ObjText& obj) {
   glm::dvec3 low{std::numeric_limits<double>::infinity()};
   glm::dvec3 high = -low;
   for (const ObjCorner& corner : obj.corners) {
@@ -295,24 +293,11 @@ glm::dvec3 far_middle(const ObjText& obj) {
     low = glm::min(low, p);
     high = glm::max(high, p);
   }
-  const glm::dvec3 half = (high - low) / 2.0;
-  const glm::dvec3 middle = (low + high) / 2.0;
-  const double size = std::max({half.x, half.y, half.z});
-  const double away = std::max({std::fabs(middle.x), std::fabs(middle.y), std::fabs(middle.z)});
-  if (!(away > kFar * size && away > kFar)) return glm::dvec3{0.0};
-  return {std::round(middle.x), std::round(middle.y), std::round(middle.z)};
-}
-
-std::string whole_text(glm::dvec3 v) {
-  std::string text = "(";
-  for (int axis = 0; axis < 3; ++axis) {
-    text.append(axis == 0 ? "" : ", ").append(std::to_string(static_cast<std::int64_t>(v[axis])));
-  }
-  return text.append(")");
+  return far_middle(low, high);
 }
 
 // Makes a model opaque of which nothing would show. Exporters take d and Tr for each other.
-void show_invisible(const ObjText& obj, const std::filesystem::path& file, ObjModel& model) {
+void show_invisible(const ObjText& obj, const std::filesystem::path& file, Model& model) {
   const auto is_shown = [&](const ObjFace& face) {
     return face.material < 0 ||
            model.materials[static_cast<std::size_t>(face.material)].opacity > 0;
@@ -329,14 +314,14 @@ void show_invisible(const ObjText& obj, const std::filesystem::path& file, ObjMo
 
 }  // namespace
 
-ObjModel load_obj_model(const std::filesystem::path& file, ThreadPool* pool) {
+Model load_obj_model(const std::filesystem::path& file, ThreadPool* pool) {
   if (pool == nullptr) {
     ThreadPool here{1};
     return load_obj_model(file, &here);
   }
   const std::string text = read_file_text(file, kMaxObjBytes);
   ObjText obj = parse_obj_text(text, file.string(), glm::dvec3{0.0}, pool);
-  const glm::dvec3 origin = far_middle(obj);
+  const glm::dvec3 origin = middle_of(obj);
   if (origin != glm::dvec3{0.0}) obj = parse_obj_text(text, file.string(), origin, pool);
   std::vector<std::uint32_t> place_of, doubled;
   std::vector<ObjTriangle> triangles;
@@ -362,7 +347,7 @@ ObjModel load_obj_model(const std::filesystem::path& file, ThreadPool* pool) {
 
   MtlMaterials library;
   load_libraries(obj, file, library);
-  ObjModel model;
+  Model model;
   model.origin = origin;
   model.materials = list_materials(obj, file, library);
   model.textures = std::move(library.textures);
@@ -371,8 +356,7 @@ ObjModel load_obj_model(const std::filesystem::path& file, ThreadPool* pool) {
   for (const std::string& warning : obj.warnings) model.warnings.push_back(printable(warning));
   show_invisible(obj, file, model);
   if (origin != glm::dvec3{0.0}) {
-    model.warnings.push_back(printable(file.string()) + ": is far from the origin for its size; " +
-                             whole_text(origin) + " is subtracted from its positions");
+    model.warnings.push_back(far_warning(file, origin));
   }
   if (!doubled.empty()) {
     model.warnings.push_back(printable(file.string()) + ": " + std::to_string(doubled.size()) +
@@ -392,7 +376,7 @@ ObjModel load_obj_model(const std::filesystem::path& file, ThreadPool* pool) {
     const std::size_t material = named >= 0 ? static_cast<std::size_t>(named) : without_material;
     if (!part_of[material]) {
       part_of[material] = growing.size();
-      ObjModel::Part& part = growing.emplace_back().part;
+      Model::Part& part = growing.emplace_back().part;
       part.material = static_cast<std::uint32_t>(material);
       if (named >= 0) {
         const auto placed = library.placements.find(obj.material_names[material]);

@@ -2,37 +2,17 @@
 // Wavefront OBJ models with their MTL materials, as they are found in the wild.
 
 #include <filesystem>
-#include <string>
-#include <vector>
 
 #include "raster/threads/parallel.h"
-#include "scenes/load/mtl_file.h"
-#include "scenes/scene.h"
+#include "scenes/load/model.h"
 
 namespace softfocus {
 
-/// A model split by material. Textures and materials are numbered from 0.
-struct ObjModel {
-  std::vector<Texture> textures;
-  std::vector<Material> materials;  ///< two-sided
-  /// One mesh a material that is used, in the order of first use.
-  struct Part {
-    Mesh mesh;
-    std::uint32_t material = 0;
-    UvPlacement placement{};  ///< of the material's textures, not yet applied
-  };
-  std::vector<Part> parts;
-  glm::dvec3 origin{0.0};  ///< what was subtracted from the file's positions
-  /// What was missing, a line each.
-  std::vector<std::string> warnings;
-  std::vector<std::filesystem::path> files;  ///< the model, its libraries and their textures
-};
-
-/// Reads a model, its materials and their textures. Throws SceneError for a file that
-/// is missing or no OBJ, a number that is none, an index out of range (with the line),
-/// a model without a face, and a texture that is there and cannot be read. A missing
-/// material library, material or texture is a warning, and neutral grey stands in. So is
-/// what parse_obj_text() tolerates.
+/// Reads a model, its materials, which are two-sided, and their textures: one part a material that
+/// is used, in the order of first use. Throws SceneError for a file that is missing or no OBJ, a
+/// number that is none, an index out of range (with the line), a model without a face, and a
+/// texture that is there and cannot be read. A missing material library, material or texture is a
+/// warning, and neutral grey stands in. So is what parse_obj_text() tolerates.
 ///
 /// A face whose corners lie where another's do, in the same or the reverse order, is left out; a
 /// warning counts them. The first one of the file stays, with its material.
@@ -46,6 +26,6 @@ struct ObjModel {
 /// their neighbours (triangles_to_turn()). A face whose winding opposes the normals
 /// given for it is turned round. v of the texture coordinates, which OBJ counts
 /// upwards, is flipped. `pool`, if any, shares out the work.
-ObjModel load_obj_model(const std::filesystem::path& file, ThreadPool* pool = nullptr);
+Model load_obj_model(const std::filesystem::path& file, ThreadPool* pool = nullptr);
 
 }  // namespace softfocus

@@ -6,7 +6,6 @@
 
 #include "raster/numbers/random_bits.h"
 #include "scenes/load/model_scene.h"
-#include "scenes/load/obj_model.h"
 #include "scenes/make/shapes.h"
 
 namespace softfocus {
@@ -85,7 +84,8 @@ using ReadModels = std::map<std::pair<std::filesystem::path, bool>, ReadModel>;
 void read_model(Section& section, const std::filesystem::path& directory,
                 const NamedSurfaces& surfaces, ReadModels& models, Scene& scene, ThreadPool* pool) {
   if (!has_key(section, "file")) {
-    fail_at(section, "file", "is missing; the path of an OBJ file would be right");
+    fail_at(section, "file",
+            "is missing; the path of a model, .gltf, .glb or .obj, would be right");
   }
   const Object placement = read_placement(section);
   std::optional<std::uint32_t> material;
@@ -95,7 +95,7 @@ void read_model(Section& section, const std::filesystem::path& directory,
   ReadModel& model = place->second;
   if (is_new) {
     model.first_object = scene.objects.size();
-    add_model(scene, load_obj_model(file, pool), placement, material);
+    add_model(scene, load_model(file, pool), placement, material);
     model.count = scene.objects.size() - model.first_object;
     return;
   }

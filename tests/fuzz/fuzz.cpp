@@ -35,6 +35,7 @@ struct FuzzTarget {
 constexpr FuzzTarget kTargets[]{
     {"fixed", fuzz_fixed},
     {"glsl", fuzz_glsl},
+    {"gltf", fuzz_gltf},
     {"mtl", fuzz_mtl},
     {"notes", fuzz_notes},
     {"obj", fuzz_obj},

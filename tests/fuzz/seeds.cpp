@@ -199,6 +199,29 @@ void put_texts(const fs::path& all) {
   Seeds{all, "mtl"}.put("one",
                         "newmtl red\nKd 0.7 0 0\nKa 0 0 0\nKs 1 1 1\nNs 30\nd 0.5\nTr 0.5\n"
                         "map_Kd -s 1 1 a.png\nmap_d b.png\n# end\nnewmtl other\nd -halo 0.5\n");
+  // A triangle with a skin, a morph target, a texture, a camera and a light.
+  const Seeds gltf{all, "gltf"};
+  gltf.put(
+      "triangle",
+      R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,)"
+      R"(AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAAEAAAAAA"}],"bufferViews":[{"buffer":0,"byteLength":36},)"
+      R"({"buffer":0,"byteLength":36,"byteStride":12}],"accessors":[{"bufferView":0,"componentType":5126,)"
+      R"("count":3,"type":"VEC3"},{"bufferView":1,"componentType":5123,"normalized":true,"count":3,)"
+      R"("type":"VEC2"},{"bufferView":1,"componentType":5121,"count":3,"type":"VEC4"},{"componentType":5126,)"
+      R"("count":3,"type":"VEC3","sparse":{"count":1,"indices":{"bufferView":0,"componentType":5121},)"
+      R"("values":{"bufferView":0}}}],"meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":0,)"
+      R"("TEXCOORD_0":1,"JOINTS_0":2,"WEIGHTS_0":2},"targets":[{"POSITION":3}],"material":0,"mode":4}],)"
+      R"("weights":[0.5]}],"skins":[{"joints":[1]}],"nodes":[{"mesh":0,"skin":0,"children":[1,2]},)"
+      R"({"rotation":[0,0,1,1],"scale":[1,-1,2],"camera":0},{"translation":[0,0,3],)"
+      R"("extensions":{"KHR_lights_punctual":{"light":0}}}],"cameras":[{"type":"perspective",)"
+      R"("perspective":{"yfov":0.7,"znear":0.1}}],"extensions":{"KHR_lights_punctual":{"lights":[)"
+      R"({"type":"point","intensity":3}]}},"materials":[{"alphaMode":"MASK","emissiveFactor":[1,0,0],)"
+      R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0,"extensions":{"KHR_texture_transform":)"
+      R"({"scale":[2,3]}}}}}],"textures":[{"source":0,"sampler":0}],"samplers":[{"wrapS":33071}],)"
+      R"("images":[{"uri":"data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAYAAAD0In+KAAAAD0lEQVR4)"
+      R"(nGP4z8DwHwhTABBdA2K1LfSlAAAAAElFTkSuQmCC"}]})");
+  gltf.put("binary", std::string{"glTF\2\0\0\0\x30\0\0\0\x1c\0\0\0JSON", 20} +
+                         R"({"asset":{"version":"2.0"}} )");
   const Seeds obj{all, "obj"};
   obj.put("quad",
           "mtllib a.mtl\no thing\ng one\nusemtl red\ns 1\nv 0 0 0\nv 1 0 0 1\nv 1 1 0\nv 0 1 0.5\n"

@@ -186,7 +186,7 @@ void complete(ChartOptions& options) {
     }
   }
   if (options.scenes.empty()) {
-    throw UsageError("no scenes were found; give --scenes with a .toml or .obj file");
+    throw UsageError("no scenes were found; give --scenes with a .toml, .glb or .obj file");
   }
   check_memory("--size", options.size,
                kChartBytesPerPixel + (options.subject->turns ? kAtlasBytesPerPixel : 0));

@@ -1,0 +1,307 @@
+#include "scenes/load/gltf_file.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <string_view>
+#include <type_traits>
+
+#include "scenes/files/file_bytes.h"
+#include "scenes/files/scene_error.h"
+#include "scenes/load/obj_text.h"
+
+// It asserts what only the file decides, and goes on well without.
+#define TINYGLTF_IMPLEMENTATION
+#ifndef NDEBUG
+#define NDEBUG
+#include <tiny_gltf.h>
+#undef NDEBUG
+#include <cassert>
+#else
+#include <tiny_gltf.h>
+#endif
+
+namespace softfocus {
+
+void fail_gltf(const GltfFile& reader, const std::string& reason) {
+  throw SceneError(reader.path.string() + ": " + reason);
+}
+
+void warn_gltf(GltfFile& reader, const std::string& what) {
+  if (!reader.told.insert(what).second) return;
+  reader.model.warnings.push_back(printable(reader.path.string() + ": " + what));
+}
+
+std::string numbered(const char* what, std::size_t number) {
+  return std::string{what} + " " + std::to_string(number);
+}
+
+namespace {
+
+constexpr std::size_t kMaxGltfBytes = std::size_t{1} << 30;
+
+bool is_any_file(const std::string& path, void*) {
+  std::error_code unknown;
+  return std::filesystem::is_regular_file(path, unknown);
+}
+
+bool read_buffer_file(std::vector<unsigned char>* bytes, std::string* error,
+                      const std::string& path, void* user) {
+  try {
+    const std::string read = read_file_bytes(path, kMaxGltfBytes);
+    static_cast<GltfFile*>(user)->model.files.emplace_back(path);
+    bytes->assign(read.begin(), read.end());
+    return true;
+  } catch (const SceneError& failed) {
+    *error += failed.what();
+    return false;
+  }
+}
+
+// Later versions of tinygltf ask for the size first.
+template <class Callbacks>
+void set_size_callback(Callbacks& callbacks) {
+  if constexpr (requires { callbacks.GetFileSizeInBytes; }) {
+    callbacks.GetFileSizeInBytes = [](std::size_t* size, std::string*, const std::string& path,
+                                      void*) {
+      std::error_code failed;
+      *size = static_cast<std::size_t>(std::filesystem::file_size(path, failed));
+      return !failed;
+    };
+  }
+}
+
+// Keeps a picture's bytes as they are.
+bool keep_picture(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
+                  const unsigned char* bytes, int size, void*) {
+  image->image.assign(bytes, bytes + size);
+  return true;
+}
+
+void parse_gltf(GltfFile& reader) {
+  const std::string bytes = read_file_bytes(reader.path, kMaxGltfBytes);
+  reader.model.files.push_back(reader.path);
+  tinygltf::FsCallbacks callbacks{};
+  callbacks.FileExists = is_any_file;
+  callbacks.ExpandFilePath = [](const std::string& path, void*) { return path; };
+  callbacks.ReadWholeFile = read_buffer_file;
+  callbacks.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&,
+                                void*) { return false; };
+  callbacks.user_data = &reader;
+  set_size_callback(callbacks);
+  tinygltf::TinyGLTF parser;
+  parser.SetFsCallbacks(callbacks);
+  parser.SetImageLoader(keep_picture, nullptr);
+  std::string error, warning;
+  const auto size = static_cast<unsigned>(bytes.size());
+  const std::string folder = reader.path.parent_path().string();
+  const bool is_binary = bytes.starts_with("glTF");
+  const bool is_read =
+      is_binary
+          ? parser.LoadBinaryFromMemory(&reader.gltf, &error, &warning,
+                                        reinterpret_cast<const unsigned char*>(bytes.data()), size,
+                                        folder)
+          : parser.LoadASCIIFromString(&reader.gltf, &error, &warning, bytes.data(), size, folder);
+  // Where packed geometry has no other form, there is nothing to read.
+  for (const char* const packed : {"KHR_draco_mesh_compression", "EXT_meshopt_compression"}) {
+    const std::vector<std::string>& required = reader.gltf.extensionsRequired;
+    const bool is_required = std::find(required.begin(), required.end(), packed) != required.end();
+    if (is_required || (!is_read && bytes.find(packed) != bytes.npos)) {
+      fail_gltf(reader, std::string{"its geometry is packed ("} + packed +
+                            "); the same model without compression would do");
+    }
+  }
+  if (!is_read) {
+    std::replace(error.begin(), error.end(), '\n', ' ');
+    fail_gltf(reader, "cannot be read (" + std::string{trimmed(error)} +
+                          "); a glTF 2.0 file, .gltf or .glb, would do");
+  }
+  const std::string& version = reader.gltf.asset.version;
+  if (!version.starts_with("2.")) {
+    fail_gltf(reader, (version.empty() ? "tells no version" : "is glTF " + version) +
+                          "; a glTF 2.0 file would do");
+  }
+}
+
+}  // namespace
+
+GltfFile open_gltf(const std::filesystem::path& path) {
+  check_no_pipe(path);
+  GltfFile reader{path};
+  parse_gltf(reader);
+  return reader;
+}
+
+namespace {
+
+std::size_t bytes_of_component(int type) {
+  switch (type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return 1;
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return 2;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+    case TINYGLTF_COMPONENT_TYPE_FLOAT: return 4;
+    default: return 0;
+  }
+}
+
+// Of an accessor's type: 1 to 4, 16 of a matrix, 0 of others.
+std::size_t numbers_of_type(int type) {
+  switch (type) {
+    case TINYGLTF_TYPE_SCALAR: return 1;
+    case TINYGLTF_TYPE_VEC2: return 2;
+    case TINYGLTF_TYPE_VEC3: return 3;
+    case TINYGLTF_TYPE_VEC4: return 4;
+    case TINYGLTF_TYPE_MAT4: return 16;
+    default: return 0;
+  }
+}
+
+// The lowest byte comes first.
+template <class Number>
+double number_at(const unsigned char* bytes, bool normalized) {
+  std::array<unsigned char, sizeof(Number)> own;
+  std::memcpy(own.data(), bytes, own.size());
+  if constexpr (std::endian::native == std::endian::big) std::reverse(own.begin(), own.end());
+  const auto value = static_cast<double>(std::bit_cast<Number>(own));
+  if (!normalized || std::is_floating_point_v<Number>) return value;
+  return std::max(value / static_cast<double>(std::numeric_limits<Number>::max()), -1.0);
+}
+
+double component_at(const unsigned char* bytes, int type, bool normalized) {
+  switch (type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE: return number_at<std::int8_t>(bytes, normalized);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return number_at<std::uint8_t>(bytes, normalized);
+    case TINYGLTF_COMPONENT_TYPE_SHORT: return number_at<std::int16_t>(bytes, normalized);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return number_at<std::uint16_t>(bytes, normalized);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return number_at<std::uint32_t>(bytes, normalized);
+    default: return number_at<float>(bytes, normalized);
+  }
+}
+
+// `count` elements of `element` bytes, `stride` apart, that begin at `offset` in a view of a
+// buffer.
+const unsigned char* elements_of(const GltfFile& reader, int view_number, std::size_t offset,
+                                 std::size_t count, std::size_t element, std::size_t& stride) {
+  const tinygltf::BufferView& view =
+      item_of(reader, reader.gltf.bufferViews, view_number, "bufferView");
+  const tinygltf::Buffer& buffer = item_of(reader, reader.gltf.buffers, view.buffer, "buffer");
+  stride = view.byteStride != 0 ? view.byteStride : element;
+  const std::size_t all = buffer.data.size();
+  const bool is_inside = view.byteOffset <= all && view.byteLength <= all - view.byteOffset;
+  const std::size_t length = view.byteLength;
+  if (!is_inside || stride < element || count == 0 || offset > length ||
+      element > length - offset || (count - 1) > (length - offset - element) / stride) {
+    fail_gltf(reader, "bufferView " + std::to_string(view_number) +
+                          " is shorter than what is read from it, or its buffer ends before");
+  }
+  return buffer.data.data() + view.byteOffset + offset;
+}
+
+// So many numbers in all.
+constexpr std::size_t kMostNumbers = std::size_t{1} << 29;
+
+void put_sparse(const GltfFile& reader, const tinygltf::Accessor& accessor, GltfNumbers& numbers) {
+  const auto& sparse = accessor.sparse;
+  if (!sparse.isSparse || sparse.count <= 0) return;
+  const auto count = static_cast<std::size_t>(sparse.count);
+  const std::size_t component = bytes_of_component(accessor.componentType);
+  const std::size_t index = bytes_of_component(sparse.indices.componentType);
+  if (index == 0) fail_gltf(reader, "a sparse accessor's indices have an unknown type");
+  std::size_t index_stride = 0, stride = 0;
+  const unsigned char* places =
+      elements_of(reader, sparse.indices.bufferView,
+                  static_cast<std::size_t>(sparse.indices.byteOffset), count, index, index_stride);
+  const unsigned char* values = elements_of(reader, sparse.values.bufferView,
+                                            static_cast<std::size_t>(sparse.values.byteOffset),
+                                            count, component * numbers.width, stride);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double place =
+        component_at(places + i * index_stride, sparse.indices.componentType, false);
+    if (!(place >= 0.0 && place < static_cast<double>(numbers.count()))) {
+      fail_gltf(reader, "a sparse accessor puts element " + std::to_string(place) + " of " +
+                            std::to_string(numbers.count()));
+    }
+    for (std::size_t k = 0; k < numbers.width; ++k) {
+      numbers.values[static_cast<std::size_t>(place) * numbers.width + k] = component_at(
+          values + i * stride + k * component, accessor.componentType, accessor.normalized);
+    }
+  }
+}
+
+}  // namespace
+
+GltfNumbers read_accessor(const GltfFile& reader, int number) {
+  const tinygltf::Accessor& accessor = item_of(reader, reader.gltf.accessors, number, "accessor");
+  const std::size_t component = bytes_of_component(accessor.componentType);
+  GltfNumbers numbers{numbers_of_type(accessor.type)};
+  if (component == 0 || numbers.width == 0 || accessor.count == 0 ||
+      accessor.count > kMostNumbers / numbers.width) {
+    fail_gltf(reader, numbered("accessor", static_cast<std::size_t>(number)) +
+                          " has a type or a count that cannot be read");
+  }
+  if (accessor.bufferView >= 0) {
+    std::size_t stride = 0;
+    const unsigned char* from = elements_of(reader, accessor.bufferView, accessor.byteOffset,
+                                            accessor.count, component * numbers.width, stride);
+    numbers.values.reserve(accessor.count * numbers.width);
+    for (std::size_t i = 0; i < accessor.count; ++i, from += stride) {
+      for (std::size_t k = 0; k < numbers.width; ++k) {
+        numbers.values.push_back(
+            component_at(from + k * component, accessor.componentType, accessor.normalized));
+      }
+    }
+  } else {
+    // Zeros, of which sparse ones may be others. A file of a few bytes may not claim gigabytes.
+    constexpr std::size_t kMostZeros = std::size_t{1} << 24;
+    if (accessor.count > kMostZeros) {
+      fail_gltf(reader, numbered("accessor", static_cast<std::size_t>(number)) + " has " +
+                            std::to_string(accessor.count) + " elements and no buffer; up to " +
+                            std::to_string(kMostZeros) + " would do");
+    }
+    numbers.values.resize(accessor.count * numbers.width);
+  }
+  put_sparse(reader, accessor, numbers);
+  return numbers;
+}
+
+std::optional<GltfNumbers> read_attribute(const GltfFile& reader,
+                                          const std::map<std::string, int>& of,
+                                          const std::string& name, std::size_t count,
+                                          std::size_t least, std::size_t most) {
+  const auto found = of.find(name);
+  if (found == of.end()) return std::nullopt;
+  GltfNumbers numbers = read_accessor(reader, found->second);
+  if (numbers.count() != count || numbers.width < least || numbers.width > most) {
+    fail_gltf(reader, name + " has " + std::to_string(numbers.count()) + " elements of " +
+                          std::to_string(numbers.width) + " numbers where " +
+                          std::to_string(count) + " of " + std::to_string(least) +
+                          " would be right");
+  }
+  return numbers;
+}
+
+const tinygltf::Value* extension(const tinygltf::ExtensionMap& extensions, const char* name) {
+  const auto found = extensions.find(name);
+  return found == extensions.end() ? nullptr : &found->second;
+}
+
+double number_in(const tinygltf::Value& object, const char* key, double fallback) {
+  if (!object.IsObject() || !object.Has(key) || !object.Get(key).IsNumber()) return fallback;
+  return object.Get(key).GetNumberAsDouble();
+}
+
+double number_in(const tinygltf::Value& object, const char* key, std::size_t i, double fallback) {
+  if (!object.IsObject() || !object.Has(key) || !object.Get(key).IsArray()) return fallback;
+  const tinygltf::Value& array = object.Get(key);
+  if (i >= array.ArrayLen()) return fallback;
+  const tinygltf::Value& item = array.Get(static_cast<int>(i));
+  return item.IsNumber() ? item.GetNumberAsDouble() : fallback;
+}
+
+}  // namespace softfocus

@@ -1,0 +1,234 @@
+#include "scenes/load/gltf_materials.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <string_view>
+#include <utility>
+
+#include "scenes/files/file_bytes.h"
+#include "scenes/files/texture_file.h"
+#include "scenes/make/procedural_texture.h"
+
+namespace softfocus {
+namespace {
+
+bool is_there(const std::filesystem::path& file) {
+  std::error_code unknown;
+  return std::filesystem::is_regular_file(file, unknown);
+}
+
+int hex_digit(char letter) {
+  if (letter >= '0' && letter <= '9') return letter - '0';
+  if (letter >= 'a' && letter <= 'f') return letter - 'a' + 10;
+  return letter >= 'A' && letter <= 'F' ? letter - 'A' + 10 : -1;
+}
+
+std::string without_percents(std::string_view uri) {
+  std::string text;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    const int high = uri[i] == '%' && i + 2 < uri.size() ? hex_digit(uri[i + 1]) : -1;
+    const int low = high >= 0 ? hex_digit(uri[i + 2]) : -1;
+    if (low >= 0) i += 2;
+    text.push_back(low >= 0 ? static_cast<char>(16 * high + low) : uri[i]);
+  }
+  return text;
+}
+
+constexpr const char* kNoPicture = " is neither PNG nor JPEG, and left out";
+
+std::optional<Texture> read_picture(GltfFile& reader, int number) {
+  const tinygltf::Image& image = item_of(reader, reader.gltf.images, number, "image");
+  const std::string what = numbered("image", static_cast<std::size_t>(number));
+  std::string bytes{image.image.begin(), image.image.end()};
+  std::string name = reader.path.string() + ": " + what;
+  if (bytes.empty()) {
+    // tinygltf leaves out what it does not know of data.
+    const bool is_data = image.uri.starts_with("data:");
+    if (image.uri.empty() || is_data) {
+      warn_gltf(reader, what + (is_data ? kNoPicture : " is missing"));
+      return std::nullopt;
+    }
+    std::filesystem::path file = reader.path.parent_path() / without_percents(image.uri);
+    if (!is_there(file)) file = reader.path.parent_path() / image.uri;
+    if (!is_there(file)) {
+      warn_gltf(reader, "texture " + image.uri + " is missing");
+      return std::nullopt;
+    }
+    bytes = read_file_bytes(file, kMaxTextureBytes);
+    name = file.string();
+    reader.model.files.push_back(std::move(file));
+  }
+  const bool is_png = bytes.starts_with("\x89PNG"), is_jpeg = bytes.starts_with("\xFF\xD8");
+  if (!is_png && !is_jpeg) {
+    warn_gltf(reader, what + kNoPicture);
+    return std::nullopt;
+  }
+  return texture_of_bytes(bytes, name);
+}
+
+std::optional<std::uint32_t> texture_of(GltfFile& reader, int image) {
+  const auto [entry, is_new] = reader.texture_of_image.try_emplace(image);
+  if (is_new) {
+    if (std::optional<Texture> read = read_picture(reader, image)) {
+      entry->second = static_cast<std::uint32_t>(reader.model.textures.size());
+      reader.model.textures.push_back(std::move(*read));
+    }
+  }
+  return entry->second;
+}
+
+int image_of(const GltfFile& reader, int texture) {
+  return item_of(reader, reader.gltf.textures, texture, "texture").source;
+}
+
+Wrap wrap_of(int mode) {
+  constexpr int kMirrored = 33648, kClamped = 33071;
+  return mode == kMirrored  ? Wrap::mirrored_repeat
+         : mode == kClamped ? Wrap::clamp_to_edge
+                            : Wrap::repeat;
+}
+
+Sampler sampler_of(const GltfFile& reader, int texture) {
+  Sampler sampler{Filter::trilinear, Wrap::repeat, Wrap::repeat};
+  const int number = item_of(reader, reader.gltf.textures, texture, "texture").sampler;
+  if (number < 0) return sampler;
+  const tinygltf::Sampler& of = item_of(reader, reader.gltf.samplers, number, "sampler");
+  sampler.wrap_u = wrap_of(of.wrapS);
+  sampler.wrap_v = wrap_of(of.wrapT);
+  constexpr int kNearest = 9728;
+  if (of.magFilter == kNearest) sampler.filter = Filter::nearest;
+  return sampler;
+}
+
+// The means of green and blue of a picture's first level, 0 to 1: roughness and metallic.
+std::array<double, 2> means_of(const Image& picture) {
+  double green = 0.0, blue = 0.0;
+  for (int y = 0; y < picture.height; ++y) {
+    const auto texels = row<std::uint8_t>(picture, y);
+    for (std::size_t x = 0; x < texels.size(); x += 4) {
+      green += texels[x + 1];
+      blue += texels[x + 2];
+    }
+  }
+  const double all = 255.0 * picture.width * picture.height;
+  return {green / all, blue / all};
+}
+
+bool has_alpha(const Image& picture) {
+  for (int y = 0; y < picture.height; ++y) {
+    const auto texels = row<std::uint8_t>(picture, y);
+    for (std::size_t x = 3; x < texels.size(); x += 4) {
+      if (texels[x] != 255) return true;
+    }
+  }
+  return false;
+}
+
+// 1 where alpha times the factor is the cutoff or more, else 0.
+Texture mask_of(const Image& picture, double factor, double cutoff) {
+  Image mask = make_image(Format::rgba8, picture.width, picture.height);
+  for (int y = 0; y < picture.height; ++y) {
+    const auto from = row<std::uint8_t>(picture, y);
+    const auto to = row<std::uint8_t>(mask, y);
+    for (std::size_t x = 0; x < to.size(); ++x) {
+      to[x] = from[x | 3] / 255.0 * factor >= cutoff ? 255 : 0;
+    }
+  }
+  Texture texture = make_texture(std::move(mask));
+  generate_mipmaps(texture, Profile{});
+  return texture;
+}
+
+void set_opacity(GltfFile& reader, const tinygltf::Material& from, int image, Material& material) {
+  if (from.alphaMode != "BLEND" && from.alphaMode != "MASK") return;
+  const double factor = from.pbrMetallicRoughness.baseColorFactor[3];
+  const bool blends = from.alphaMode == "BLEND";
+  if (blends) material.opacity = static_cast<float>(std::clamp(factor, 0.0, 1.0));
+  const bool has_picture =
+      material.texture && has_alpha(reader.model.textures[*material.texture].levels[0]);
+  if (!has_picture) {
+    if (!blends && factor < from.alphaCutoff) material.opacity = 0.0f;
+    return;
+  }
+  const auto [entry, is_new] = reader.opacity_of_image.try_emplace(
+      {image, blends ? 0.0 : factor, blends ? -1.0 : from.alphaCutoff},
+      static_cast<std::uint32_t>(reader.model.textures.size()));
+  if (is_new) {
+    const Image& picture = reader.model.textures[*material.texture].levels[0];
+    reader.model.textures.push_back(blends ? make_opacity_texture(picture)
+                                           : mask_of(picture, factor, from.alphaCutoff));
+  }
+  material.opacity_texture = entry->second;
+  material.opacity_sampler = material.sampler;
+  material.cut_out = is_cut_out(reader.model.textures[entry->second]);
+}
+
+// As much of a factor as is there, from 0 to 1.
+glm::dvec3 colour_of(std::span<const double> factor) {
+  glm::dvec3 colour{0.0};
+  for (std::size_t i = 0; i < std::min(factor.size(), std::size_t{3}); ++i) {
+    colour[static_cast<int>(i)] = std::clamp(factor[i], 0.0, 1.0);
+  }
+  return colour;
+}
+
+double largest(glm::dvec3 v) { return std::max({v.x, v.y, v.z}); }
+
+}  // namespace
+
+ShownColour shown_colour(GltfFile& reader, const tinygltf::Material& from) {
+  constexpr double kBlack = 0.01;
+  const tinygltf::TextureInfo& base = from.pbrMetallicRoughness.baseColorTexture;
+  const tinygltf::TextureInfo& light = from.emissiveTexture;
+  const glm::dvec3 colour = colour_of(from.pbrMetallicRoughness.baseColorFactor);
+  const glm::dvec3 emitted = colour_of(from.emissiveFactor);
+  if (largest(emitted) > 0.0 && largest(colour) <= kBlack) {
+    return {emitted, light.index, light.texCoord, &light.extensions, true};
+  }
+  if (largest(emitted) > 0.0) {
+    warn_gltf(reader, "material " + from.name + ": the light that it gives off is left out");
+  }
+  return {colour, base.index, base.texCoord, &base.extensions};
+}
+
+Material material_of(GltfFile& reader, const tinygltf::Material& from) {
+  const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
+  Material material;
+  material.name = from.name;
+  material.two_sided = from.doubleSided;
+  material.lit = extension(from.extensions, "KHR_materials_unlit") == nullptr;
+  double metallic = std::clamp(pbr.metallicFactor, 0.0, 1.0);
+  double roughness = std::clamp(pbr.roughnessFactor, 0.0, 1.0);
+  if (pbr.metallicRoughnessTexture.index >= 0) {
+    const int image = image_of(reader, pbr.metallicRoughnessTexture.index);
+    if (const auto read = image >= 0 ? read_picture(reader, image) : std::nullopt) {
+      const auto [rough, metal] = means_of(read->levels[0]);
+      roughness *= rough;
+      metallic *= metal;
+    }
+  }
+  const ShownColour shown = shown_colour(reader, from);
+  const glm::dvec3 base = shown.factor;
+  if (shown.shines) material.lit = false;
+  int image = -1;
+  if (shown.texture >= 0) {
+    image = image_of(reader, shown.texture);
+    if (image >= 0) material.texture = texture_of(reader, image);
+    material.sampler = sampler_of(reader, shown.texture);
+  }
+  material.diffuse = glm::vec3{material.lit ? base * (1.0 - metallic / 2.0) : base};
+  material.ambient = material.diffuse;
+  const double square = roughness * roughness;
+  const double exponent = std::clamp(2.0 / std::max(square * square, 1e-6) - 2.0, 1.0, 1024.0);
+  material.shininess = static_cast<int>(exponent + 0.5);
+  const glm::dvec3 mirrored = glm::dvec3{0.04 * (1.0 - metallic)} + base * metallic;
+  for (int i = 0; i < 3; ++i) {
+    material.specular[i] = static_cast<float>(std::min(mirrored[i] * (exponent + 8.0) / 8.0, 1.0));
+  }
+  set_opacity(reader, from, image, material);
+  return material;
+}
+
+}  // namespace softfocus

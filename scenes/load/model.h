@@ -1,0 +1,42 @@
+#pragma once
+// A model as its file has it, whatever the format.
+
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenes/load/mtl_file.h"
+#include "scenes/scene.h"
+
+namespace softfocus {
+
+/// Textures and materials are numbered from 0.
+struct Model {
+  std::vector<Texture> textures;
+  std::vector<Material> materials;
+  /// What has one material.
+  struct Part {
+    Mesh mesh;
+    std::uint32_t material = 0;
+    UvPlacement placement{};  ///< of the material's textures, not yet applied
+  };
+  std::vector<Part> parts;
+  glm::dvec3 origin{0.0};  ///< what was subtracted from the file's positions
+  /// What was missing, a line each.
+  std::vector<std::string> warnings;
+  std::vector<std::filesystem::path> files;  ///< the model, its libraries and their textures
+  // For a model that is a scene by itself.
+  std::optional<Camera> camera{};  ///< without near and far
+  std::vector<Light> lights{};
+};
+
+/// The middle of a box, in whole units, where it is so far from the origin that binary32 would lose
+/// more than six bits of what the box holds; else the origin.
+glm::dvec3 far_middle(glm::dvec3 low, glm::dvec3 high);
+
+/// "FILE: is far from the origin ...".
+std::string far_warning(const std::filesystem::path& file, glm::dvec3 subtracted);
+
+}  // namespace softfocus

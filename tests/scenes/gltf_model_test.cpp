@@ -1,0 +1,522 @@
+// glTF models: geometry, materials, camera and lights against numbers by hand, and what is refused.
+
+#include "scenes/load/gltf_model.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "raster/images/texel.h"
+#include "scenes/load/load_scene.h"
+#include "scenes/load/model_scene.h"
+#include "tests/support/scene_test_files.h"
+#include "tests/support/skip.h"
+#include "tools/files/base64.h"
+
+using namespace softfocus;
+using namespace softfocus::test;
+
+namespace {
+
+constexpr int kByte = 5121, kShort = 5123, kInt = 5125, kFloat = 5126;
+
+/// Red and opaque beside green of an alpha of 100.
+const std::string kTwoTexels =
+    "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAYAAAD0In+KAAAAD0lEQVR4nGP4z8DwHwhT"
+    "ABBdA2K1LfSlAAAAAElFTkSuQmCC";
+
+/// The text of a model: what tests put into its lists, and a buffer of their numbers.
+struct Gltf {
+  std::string bytes, views, accessors, meshes, nodes, more;
+
+  static void item(std::string& list, const std::string& text) {
+    list += (list.empty() ? "" : ",") + text;
+  }
+
+  /// A view of bytes; its number.
+  int view(const std::string& of, int stride = 0) {
+    item(views, "{\"buffer\":0,\"byteOffset\":" + std::to_string(bytes.size()) +
+                    ",\"byteLength\":" + std::to_string(of.size()) +
+                    (stride != 0 ? ",\"byteStride\":" + std::to_string(stride) : "") + "}");
+    bytes += of;
+    bytes.resize((bytes.size() + 3) / 4 * 4);
+    return view_count++;
+  }
+  /// An accessor of numbers of a type; its number.
+  template <class Number>
+  int add(const std::vector<Number>& numbers, const std::string& type, int width, int component,
+          const std::string& also = "") {
+    std::string of;
+    for (const Number number : numbers) {
+      std::uint64_t bits = 0;
+      std::memcpy(&bits, &number, sizeof number);
+      if constexpr (sizeof(Number) == 4) {
+        std::uint32_t word = 0;
+        std::memcpy(&word, &number, 4);
+        bits = word;
+      } else if constexpr (sizeof(Number) == 2) {
+        bits = static_cast<std::uint16_t>(number);
+      } else {
+        bits = static_cast<std::uint8_t>(number);
+      }
+      for (std::size_t i = 0; i < sizeof number; ++i) {
+        of.push_back(static_cast<char>(bits >> (8 * i) & 255));
+      }
+    }
+    const int number_of_view = view(of);
+    item(accessors, "{\"bufferView\":" + std::to_string(number_of_view) +
+                        ",\"componentType\":" + std::to_string(component) + ",\"count\":" +
+                        std::to_string(numbers.size() / static_cast<std::size_t>(width)) +
+                        ",\"type\":\"" + type + "\"" + also + "}");
+    return accessor_count++;
+  }
+  int floats(const std::vector<float>& numbers, const std::string& type, int width) {
+    return add(numbers, type, width, kFloat);
+  }
+  void mesh(const std::string& attributes, const std::string& also = "") {
+    item(meshes, "{\"primitives\":[{\"attributes\":{" + attributes + "}" + also + "}]}");
+  }
+  void node(const std::string& text) { item(nodes, "{" + text + "}"); }
+
+  std::string text(const std::string& buffer_uri) const {
+    return "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{" + buffer_uri +
+           "\"byteLength\":" + std::to_string(bytes.size()) + "}],\"bufferViews\":[" + views +
+           "],\"accessors\":[" + accessors + "],\"meshes\":[" + meshes + "],\"nodes\":[" +
+           (nodes.empty() ? "{\"mesh\":0}" : nodes) + "]" + more + "}";
+  }
+  std::string text() const {
+    const auto* data = reinterpret_cast<const std::byte*>(bytes.data());
+    return text("\"uri\":\"data:application/octet-stream;base64," + base64({data, bytes.size()}) +
+                "\",");
+  }
+  std::string binary() const {
+    std::string json = text("");
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    std::string made;
+    const auto word = [&](std::size_t value) {
+      for (int i = 0; i < 4; ++i) made.push_back(static_cast<char>(value >> (8 * i) & 255));
+    };
+    made += "glTF";
+    word(2);
+    word(12 + 8 + json.size() + 8 + bytes.size());
+    word(json.size());
+    made += "JSON" + json;
+    word(bytes.size());
+    made += std::string{"BIN\0", 4} + bytes;
+    return made;
+  }
+
+  int view_count = 0, accessor_count = 0;
+};
+
+/// One triangle: (0, 0, 0), (1, 0, 0), (0, 2, 0).
+Gltf triangle(const std::string& attributes = "", const std::string& also = "") {
+  Gltf gltf;
+  gltf.floats({0, 0, 0, 1, 0, 0, 0, 2, 0}, "VEC3", 3);
+  gltf.mesh("\"POSITION\":0" + attributes, also);
+  return gltf;
+}
+
+Model load(const std::string& bytes, const std::string& name = "model.gltf") {
+  const TemporaryDirectory directory;
+  write_file(directory.file(name), bytes);
+  return load_gltf_model(directory.file(name));
+}
+
+Model load(const Gltf& gltf) { return load(gltf.text()); }
+
+// What is wrong with it, without the file's name.
+std::string complaint(const std::string& bytes) {
+  const TemporaryDirectory directory;
+  const std::string file = directory.file("model.gltf");
+  write_file(file, bytes);
+  const std::string said = scene_error_of([&] { load_gltf_model(file); });
+  return said.starts_with(file + ": ") ? said.substr(file.size() + 2) : "unnamed: " + said;
+}
+
+bool lacks_gltf() {
+  if (complaint(triangle().text() + "x").find("was built without glTF") == std::string::npos) {
+    return false;
+  }
+  skip("glTF", "built without tinygltf");
+  return true;
+}
+
+bool warns(const Model& model, const std::string& of) {
+  return std::any_of(model.warnings.begin(), model.warnings.end(),
+                     [&](const std::string& line) { return line.find(of) != std::string::npos; });
+}
+
+std::vector<glm::vec3> corners(const Model& model, std::size_t part = 0) {
+  const Mesh& mesh = model.parts.at(part).mesh;
+  std::vector<glm::vec3> made;
+  for (const std::uint32_t index : mesh.indices) made.push_back(mesh.positions.at(index));
+  return made;
+}
+
+using Corners = std::vector<glm::vec3>;
+
+std::string material(const std::string& text) { return ",\"materials\":[{" + text + "}]"; }
+
+}  // namespace
+
+TEST_CASE("a triangle has its corners, flat normals, and the material for none") {
+  if (lacks_gltf()) return;
+  const Gltf gltf = triangle();
+  for (const Model& model : {load(gltf), load(gltf.binary(), "model.glb")}) {
+    CHECK(corners(model) == Corners{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}});
+    CHECK(model.parts[0].mesh.normals == std::vector<glm::vec3>(3, {0, 0, 1}));
+    CHECK(model.materials.at(model.parts[0].material).diffuse == glm::vec3{0.5f});
+    CHECK(!model.camera);
+    CHECK(model.lights.empty());
+    CHECK(model.warnings.empty());
+  }
+}
+
+TEST_CASE("nodes put meshes where all above them say, and copies are there each") {
+  if (lacks_gltf()) return;
+  Gltf gltf = triangle();
+  // A quarter turn about y after a scale: (x, y, z) -> (z, y, -x).
+  gltf.node(
+      "\"children\":[1,2],\"translation\":[10,0,0],\"scale\":[2,3,4],"
+      "\"rotation\":[0,0.70710678118654752,0,0.70710678118654752]");
+  gltf.node("\"mesh\":0,\"translation\":[1,0,0]");
+  gltf.node("\"mesh\":0,\"matrix\":[-1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,5,1]");
+  gltf.more = ",\"scenes\":[{\"nodes\":[0]}],\"scene\":0";
+  const Model model = load(gltf);
+  const Corners found = corners(model);
+  const Corners right{{10, 0, -2}, {10, 0, -4}, {10, 6, -2}, {30, 0, 0}, {30, 6, 0}, {30, 0, 2}};
+  REQUIRE(found.size() == right.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    // The mirrored copy is turned, so its front stays in front.
+    const glm::vec3 off = found[i] - right[i == 4 ? 4 : i];
+    CAPTURE(i);
+    CHECK(dot(off, off) < 1e-9f);
+  }
+  CHECK(model.parts.size() == 1);
+  // Without scenes, what is nobody's child.
+  gltf.more = "";
+  CHECK(corners(load(gltf)) == found);
+}
+
+TEST_CASE("normals go with the inverse transpose") {
+  if (lacks_gltf()) return;
+  Gltf gltf = triangle(",\"NORMAL\":1");
+  gltf.floats({0, 0, 1, 0.6f, 0.8f, 0, 1, 0, 0}, "VEC3", 3);
+  gltf.node("\"mesh\":0,\"scale\":[2,1,-1]");
+  const Model model = load(gltf);
+  const std::vector<glm::vec3>& normals = model.parts[0].mesh.normals;
+  CHECK(normals[0] == glm::vec3{0, 0, -1});
+  const glm::vec3 slanted = normalize(glm::vec3{0.3f, 0.8f, 0.0f});
+  CHECK(std::fabs(normals[1].x - slanted.x) < 1e-6f);
+  CHECK(std::fabs(normals[1].y - slanted.y) < 1e-6f);
+  CHECK(corners(model) == Corners{{0, 0, 0}, {0, 2, 0}, {2, 0, 0}});
+}
+
+TEST_CASE("strips and fans, with and without indices; lines are left out") {
+  if (lacks_gltf()) return;
+  const auto of_mode = [](int mode, const std::string& also) {
+    Gltf gltf;
+    gltf.floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0}, "VEC3", 3);
+    gltf.add<std::uint8_t>({4, 3, 2, 1}, "SCALAR", 1, kByte);
+    gltf.mesh("\"POSITION\":0", ",\"mode\":" + std::to_string(mode) + also);
+    return gltf;
+  };
+  const glm::vec3 p[5] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 2, 0}};
+  CHECK(corners(load(of_mode(5, ""))) ==
+        Corners{p[0], p[1], p[2], p[1], p[3], p[2], p[2], p[3], p[4]});
+  CHECK(corners(load(of_mode(5, ",\"indices\":1"))) == Corners{p[4], p[3], p[2], p[3], p[1], p[2]});
+  CHECK(corners(load(of_mode(6, ""))) ==
+        Corners{p[1], p[2], p[0], p[2], p[3], p[0], p[3], p[4], p[0]});
+  CHECK(corners(load(of_mode(4, ",\"indices\":1"))) == Corners{p[4], p[3], p[2]});
+  Gltf both = of_mode(1, "");
+  CHECK(complaint(both.text()) == "has no triangles in its scene; a mesh would be right");
+  both.mesh("\"POSITION\":0");
+  both.node("\"mesh\":0");
+  both.node("\"mesh\":1");
+  const Model model = load(both);
+  CHECK(corners(model).size() == 3);
+  CHECK(warns(model, "points and lines are left out"));
+}
+
+TEST_CASE("whole numbers are shares of 1, elements may lie apart, and sparse ones replace others") {
+  if (lacks_gltf()) return;
+  Gltf gltf = triangle(",\"TEXCOORD_0\":1,\"COLOR_0\":2", ",\"indices\":3");
+  gltf.add<std::uint16_t>({0, 65535, 32768, 0, 13107, 65535}, "VEC2", 2, kShort,
+                          ",\"normalized\":true");
+  gltf.add<std::uint8_t>({255, 0, 51, 255, 0, 255, 102, 0, 0, 0, 255, 9}, "VEC4", 4, kByte,
+                         ",\"normalized\":true");
+  gltf.add<std::uint32_t>({2, 0, 1}, "SCALAR", 1, kInt);
+  const Model model = load(gltf);
+  const Mesh& mesh = model.parts[0].mesh;
+  const std::uint32_t first = mesh.indices[0];
+  CHECK(mesh.positions[first] == glm::vec3{0, 2, 0});
+  CHECK(mesh.uvs[first] == glm::vec2{0.2f, 1.0f});
+  CHECK(mesh.colours[first] == glm::vec3{0, 0, 1});
+  CHECK(mesh.colours[mesh.indices[1]] == glm::vec3{1, 0, 0.2f});
+
+  Gltf apart;
+  // Positions and one number more, 16 bytes apart.
+  std::string rows;
+  for (const float number : {0.0f, 0.0f, 0.0f, 7.0f, 1.0f, 0.0f, 0.0f, 7.0f, 0.0f, 2.0f, 0.0f}) {
+    std::uint32_t word = 0;
+    std::memcpy(&word, &number, 4);
+    for (int i = 0; i < 4; ++i) rows.push_back(static_cast<char>(word >> (8 * i) & 255));
+  }
+  apart.view(rows, 16);
+  Gltf::item(apart.accessors,
+             "{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}");
+  ++apart.accessor_count;
+  apart.mesh("\"POSITION\":0");
+  CHECK(corners(load(apart)) == Corners{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}});
+
+  Gltf sparse;
+  sparse.add<std::uint8_t>({1, 2}, "SCALAR", 1, kByte);
+  sparse.floats({1, 0, 0, 0, 2, 0}, "VEC3", 3);
+  Gltf::item(
+      sparse.accessors,
+      "{\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"sparse\":{\"count\":2,"
+      "\"indices\":{\"bufferView\":0,\"componentType\":5121},\"values\":{\"bufferView\":1}}}");
+  sparse.mesh("\"POSITION\":2");
+  CHECK(corners(load(sparse)) == Corners{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}});
+}
+
+TEST_CASE("a skin's joints move what they hold, and morph targets add to it") {
+  if (lacks_gltf()) return;
+  Gltf gltf = triangle(",\"JOINTS_0\":1,\"WEIGHTS_0\":2", ",\"targets\":[{\"POSITION\":4}]");
+  gltf.add<std::uint8_t>({0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}, "VEC4", 4, kByte);
+  gltf.floats({1, 0, 0, 0, 1, 0, 0, 0, 0.5f, 0.5f, 0, 0}, "VEC4", 4);
+  const std::vector<float> here{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  std::vector<float> both = here;
+  both.insert(both.end(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -3, 0, 0, 1});
+  gltf.floats(both, "MAT4", 16);
+  gltf.floats({0, 0, 4, 0, 0, 0, 0, 0, 0}, "VEC3", 3);
+  // The node's own place counts for nothing; joint 1 was bound 3 to the right and is 5 up there.
+  gltf.node("\"mesh\":0,\"skin\":0,\"translation\":[100,100,100],\"weights\":[0.5]");
+  gltf.node("\"translation\":[0,0,1]");
+  gltf.node("\"translation\":[3,5,0]");
+  gltf.more = ",\"skins\":[{\"joints\":[1,2],\"inverseBindMatrices\":3}]";
+  CHECK(corners(load(gltf)) == Corners{{0, 0, 3}, {1, 5, 0}, {0, 4.5f, 0.5f}});
+}
+
+TEST_CASE("a metallic-roughness material becomes Blinn-Phong's by the rule") {
+  if (lacks_gltf()) return;
+  const auto of = [](const std::string& text) {
+    Gltf gltf = triangle("", ",\"material\":0");
+    gltf.more = material(text);
+    return load(gltf).materials[0];
+  };
+  const Material painted =
+      of("\"name\":\"red\",\"doubleSided\":true,\"pbrMetallicRoughness\":{\"baseColorFactor\":"
+         "[0.5,0.25,0,1],\"metallicFactor\":0.5,\"roughnessFactor\":0.5}");
+  CHECK(painted.name == "red");
+  CHECK(painted.two_sided);
+  CHECK(painted.diffuse == glm::vec3{0.375f, 0.1875f, 0.0f});
+  CHECK(painted.ambient == painted.diffuse);
+  CHECK(painted.shininess == 30);  // 2 / 0.0625 - 2
+  CHECK(painted.specular.x == 1.0f);
+  CHECK(painted.specular.y == doctest::Approx(0.145 * 38 / 8));
+  CHECK(painted.specular.z == doctest::Approx(0.02 * 38 / 8));
+  CHECK(painted.opacity == 1.0f);
+  CHECK(!of("\"pbrMetallicRoughness\":{}").two_sided);
+  CHECK(of("\"pbrMetallicRoughness\":{\"roughnessFactor\":0}").shininess == 1024);
+  const Material unlit =
+      of("\"extensions\":{\"KHR_materials_unlit\":{}},"
+         "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,0.25,0,1]}");
+  CHECK(!unlit.lit);
+  CHECK(unlit.diffuse == glm::vec3{0.5f, 0.25f, 0.0f});
+  const Material lamp =
+      of("\"emissiveFactor\":[1,0.5,0],"
+         "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0,0,0,1]}");
+  CHECK(!lamp.lit);
+  CHECK(lamp.diffuse == glm::vec3{1.0f, 0.5f, 0.0f});
+}
+
+TEST_CASE("textures have their places, their mode of alpha and their means") {
+  if (lacks_gltf()) return;
+  const auto of = [](const std::string& text, const std::string& uri) {
+    Gltf gltf = triangle(",\"TEXCOORD_0\":1", ",\"material\":0");
+    gltf.floats({0.25f, 0.5f, 1, 0, 0, 1}, "VEC2", 2);
+    gltf.more = material(text) +
+                ",\"textures\":[{\"source\":0,\"sampler\":0}],\"samplers\":[{"
+                "\"wrapS\":33071,\"wrapT\":33648,\"magFilter\":9728}],\"images\":[{\"uri\":\"" +
+                uri + "\"}]";
+    return load(gltf);
+  };
+  const std::string colour =
+      "\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,1,1,0.5],"
+      "\"baseColorTexture\":{\"index\":0}}";
+  const Model opaque = of(colour, kTwoTexels);
+  REQUIRE(opaque.materials[0].texture == 0u);
+  CHECK(load_texel(opaque.textures[0].levels[0], 0, 0) == glm::vec4{1, 0, 0, 1});
+  CHECK(opaque.materials[0].sampler.wrap_u == Wrap::clamp_to_edge);
+  CHECK(opaque.materials[0].sampler.wrap_v == Wrap::mirrored_repeat);
+  CHECK(opaque.materials[0].sampler.filter == Filter::nearest);
+  CHECK(opaque.materials[0].opacity == 1.0f);
+  CHECK(!opaque.materials[0].opacity_texture);
+
+  const Model blended = of("\"alphaMode\":\"BLEND\"," + colour, kTwoTexels);
+  CHECK(blended.materials[0].opacity == 0.5f);
+  CHECK(!blended.materials[0].cut_out);
+  const Image& opacity = blended.textures.at(*blended.materials[0].opacity_texture).levels[0];
+  CHECK(load_texel(opacity, 1, 0).x == doctest::Approx(100.0 / 255.0));
+
+  // 100 / 255 * 0.5 is below 0.3, and above 0.1.
+  for (const auto& [cutoff, there] : {std::pair{"0.3", 0.0f}, std::pair{"0.1", 1.0f}}) {
+    const Model masked = of(
+        "\"alphaMode\":\"MASK\",\"alphaCutoff\":" + std::string{cutoff} + "," + colour, kTwoTexels);
+    CHECK(masked.materials[0].cut_out);
+    CHECK(masked.materials[0].opacity == 1.0f);
+    const Image& mask = masked.textures.at(*masked.materials[0].opacity_texture).levels[0];
+    CHECK(load_texel(mask, 0, 0).x == 1.0f);
+    CHECK(load_texel(mask, 1, 0).x == there);
+  }
+
+  const Model placed =
+      of("\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,\"extensions\":{"
+         "\"KHR_texture_transform\":{\"offset\":[0.5,0.25],\"scale\":[2,4],"
+         "\"rotation\":1.5707963267948966}}}}",
+         kTwoTexels);
+  // (0.5, 2) turned: u' = v, v' = -u.
+  CHECK(placed.parts[0].mesh.uvs[placed.parts[0].mesh.indices[0]] == glm::vec2{2.5f, -0.25f});
+
+  // Roughness is the mean of green, 0.5; metallic that of blue, 0.
+  const Model means =
+      of("\"pbrMetallicRoughness\":{\"metallicRoughnessTexture\":{\"index\":0}}", kTwoTexels);
+  CHECK(means.materials[0].diffuse == glm::vec3{1.0f});
+  CHECK(means.materials[0].shininess == 30);
+
+  const Model missing = of(colour, "not%20there.png");
+  CHECK(!missing.materials[0].texture);
+  CHECK(warns(missing, "texture not%20there.png is missing"));
+  const Model other = of(colour, "data:image/webp;base64,UklGRg==");
+  CHECK(!other.materials[0].texture);
+  CHECK(warns(other, "image 0 is neither PNG nor JPEG, and left out"));
+}
+
+TEST_CASE("a picture beside the model is found by its name with percents, and listed") {
+  if (lacks_gltf()) return;
+  const TemporaryDirectory directory;
+  write_file(directory.file("a b.png"), png_bytes(4, 4));
+  Gltf gltf = triangle("", ",\"material\":0");
+  gltf.more = material("\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}") +
+              ",\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"a%20b.png\"}]";
+  write_file(directory.file("buffer.bin"), gltf.bytes);
+  write_file(directory.file("model.gltf"), gltf.text("\"uri\":\"buffer.bin\","));
+  const Model model = load_gltf_model(directory.file("model.gltf"));
+  CHECK(model.textures.size() == 1);
+  const std::vector<std::filesystem::path> files{
+      directory.file("model.gltf"), directory.file("buffer.bin"), directory.file("a b.png")};
+  CHECK(model.files == files);
+}
+
+TEST_CASE("the first camera and the lights stand where their nodes are") {
+  if (lacks_gltf()) return;
+  Gltf gltf = triangle();
+  gltf.node("\"mesh\":0");
+  gltf.node("\"camera\":0,\"translation\":[0,1,4]");
+  gltf.node("\"translation\":[2,1,0],\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}");
+  gltf.node(
+      "\"rotation\":[-0.70710678118654752,0,0,0.70710678118654752],"
+      "\"extensions\":{\"KHR_lights_punctual\":{\"light\":1}}");
+  gltf.more =
+      ",\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":0.78539816339744831,"
+      "\"znear\":0.1}}],\"extensions\":{\"KHR_lights_punctual\":{\"lights\":["
+      "{\"type\":\"point\",\"intensity\":9,\"color\":[1,0.5,0]},"
+      "{\"type\":\"directional\",\"intensity\":2}]}}";
+  const Model model = load(gltf);
+  REQUIRE(model.camera);
+  CHECK(model.camera->position == glm::dvec3{0, 1, 4});
+  CHECK(model.camera->target == glm::dvec3{0, 1, 3});
+  CHECK(model.camera->fov_y_degrees == doctest::Approx(45.0));
+  REQUIRE(model.lights.size() == 2);
+  CHECK(model.lights[0].kind == LightKind::point);
+  CHECK(model.lights[0].position_or_direction == glm::vec3{2, 1, 0});
+  // 9 at (2, 1, 0), seen from the middle (0.5, 1, 0): 4 of 4.
+  CHECK(model.lights[0].colour == glm::vec3{1.0f, 0.5f, 0.0f});
+  CHECK(model.lights[1].kind == LightKind::directional);
+  CHECK(model.lights[1].position_or_direction.y == doctest::Approx(1.0));
+  CHECK(model.lights[1].colour == glm::vec3{0.5f});
+
+  const TemporaryDirectory directory;
+  write_file(directory.file("model.GLB"), gltf.binary());
+  const Scene scene = load_scene(directory.file("model.GLB"), {});
+  CHECK(scene.camera.position == glm::dvec3{0, 1, 4});
+  CHECK(scene.camera.far_m == doctest::Approx(6.0));
+  CHECK(scene.camera.near_m == doctest::Approx(2.0));
+  CHECK(scene.lights.size() == 2);
+  CHECK(scene.lens.lens.focus_m == doctest::Approx(4.0));
+}
+
+TEST_CASE("a model far from the origin for its size comes back to it") {
+  if (lacks_gltf()) return;
+  Gltf gltf = triangle();
+  gltf.node("\"mesh\":0,\"translation\":[500000,20,4000000]");
+  const Model model = load(gltf);
+  CHECK(model.origin == glm::dvec3{500001, 21, 4000000});
+  CHECK(corners(model) == Corners{{-1, -1, 0}, {0, -1, 0}, {-1, 1, 0}});
+  CHECK(warns(model, "is far from the origin for its size"));
+}
+
+TEST_CASE("a scene puts a glTF model where an object says") {
+  if (lacks_gltf()) return;
+  const TemporaryDirectory directory;
+  write_file(directory.file("model.glb"), triangle().binary());
+  const Scene scene = read_scene_text(
+      "[camera]\nposition = [0, 0, 3]\n[lens]\nfocus_m = 3\n[[object]]\n"
+      "shape = \"model\"\nfile = \"model.glb\"\nposition = [1, 2, 3]\n",
+      directory.file("scene.toml"));
+  REQUIRE(scene.objects.size() == 1);
+  CHECK(scene.objects[0].position == glm::dvec3{1, 2, 3});
+  CHECK(scene.meshes[0].positions.size() == 3);
+}
+
+TEST_CASE("what is no glTF 2.0, or goes past its bytes, is refused") {
+  if (lacks_gltf()) return;
+  const std::string good = triangle().text();
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    const std::size_t at = text.find(from);
+    REQUIRE(at != std::string::npos);
+    return complaint(text.replace(at, from.size(), to));
+  };
+  CHECK(complaint("").starts_with("cannot be read"));
+  CHECK(complaint("{}").starts_with("cannot be read"));
+  CHECK(complaint("glTF").starts_with("cannot be read"));
+  CHECK(with("\"2.0\"", "\"1.0\"") == "is glTF 1.0; a glTF 2.0 file would do");
+  const std::string binary = triangle().binary();
+  for (std::size_t size = 0; size < binary.size(); size += 7) {
+    CHECK(complaint(binary.substr(0, size)) != "unnamed: ");
+  }
+  CHECK(with("\"count\":3", "\"count\":4") ==
+        "bufferView 0 is shorter than what is read from it, or its buffer ends before");
+  CHECK(with("\"byteLength\":36}]", "\"byteLength\":360000}]").find("read") != std::string::npos);
+  CHECK(with("\"count\":3", "\"count\":4000000000000").find("accessor 0") == 0);
+  CHECK(with("\"POSITION\":0", "\"POSITION\":9") == "there is no accessor 9 of 1");
+  CHECK(with("{\"mesh\":0}", "{\"mesh\":3}") == "there is no mesh 3 of 1");
+  CHECK(with("{\"mesh\":0}", "{\"mesh\":0,\"children\":[0]}") ==
+        "has no triangles in its scene; a mesh would be right");
+  CHECK(with("{\"mesh\":0}]", "{\"mesh\":0,\"children\":[0]}],\"scenes\":[{\"nodes\":[0]}]") ==
+        "node 0 is in two places, or below itself; a tree would be right");
+  CHECK(with("\"2.0\"}", "\"2.0\"},\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]") ==
+        "its geometry is packed (KHR_draco_mesh_compression); the same model without compression "
+        "would do");
+  Gltf indexed = triangle("", ",\"indices\":1");
+  indexed.add<std::uint8_t>({0, 1, 3}, "SCALAR", 1, kByte);
+  CHECK(complaint(indexed.text()) == "an index is 3 of 3 vertices");
+  Gltf infinite;
+  infinite.floats({0, 0, 0, 1, 0, 0, 0, std::numeric_limits<float>::infinity(), 0}, "VEC3", 3);
+  infinite.mesh("\"POSITION\":0");
+  CHECK(complaint(infinite.text()) == "a position is no number, or beyond 1e9");
+  Gltf coloured = triangle(",\"COLOR_0\":1");
+  coloured.floats({1, 1, 1, 1, 1, 1}, "VEC3", 3);
+  CHECK(complaint(coloured.text()) ==
+        "COLOR_0 has 2 elements of 3 numbers where 3 of 3 would be right");
+}
