@@ -75,10 +75,10 @@ void set_size_callback(Callbacks& callbacks) {
   }
 }
 
-// Keeps a picture's bytes as they are.
+// Keeps the bytes of a picture that the text holds. tinygltf checks no bounds of one in a buffer.
 bool keep_picture(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
                   const unsigned char* bytes, int size, void*) {
-  image->image.assign(bytes, bytes + size);
+  if (image->bufferView < 0) image->image.assign(bytes, bytes + size);
   return true;
 }
 
@@ -195,8 +195,9 @@ const unsigned char* elements_of(const GltfFile& reader, int view_number, std::s
   const std::size_t all = buffer.data.size();
   const bool is_inside = view.byteOffset <= all && view.byteLength <= all - view.byteOffset;
   const std::size_t length = view.byteLength;
-  if (!is_inside || stride < element || count == 0 || offset > length ||
-      element > length - offset || (count - 1) > (length - offset - element) / stride) {
+  if (!is_inside || element == 0 || (count > 1 && stride < element) || count == 0 ||
+      offset > length || element > length - offset ||
+      (count - 1) > (length - offset - element) / stride) {
     fail_gltf(reader, "bufferView " + std::to_string(view_number) +
                           " is shorter than what is read from it, or its buffer ends before");
   }
@@ -268,6 +269,14 @@ GltfNumbers read_accessor(const GltfFile& reader, int number) {
   }
   put_sparse(reader, accessor, numbers);
   return numbers;
+}
+
+std::string view_bytes(const GltfFile& reader, int number) {
+  const std::size_t length =
+      item_of(reader, reader.gltf.bufferViews, number, "bufferView").byteLength;
+  std::size_t stride = 0;
+  const unsigned char* bytes = elements_of(reader, number, 0, 1, length, stride);
+  return {bytes, bytes + length};
 }
 
 std::optional<GltfNumbers> read_attribute(const GltfFile& reader,

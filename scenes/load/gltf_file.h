@@ -66,6 +66,9 @@ struct GltfNumbers {
   glm::dvec3 vec3(std::size_t i) const { return {(*this)[i][0], (*this)[i][1], (*this)[i][2]}; }
 };
 
+/// All of a bufferView.
+std::string view_bytes(const GltfFile& reader, int number);
+
 GltfNumbers read_accessor(const GltfFile& reader, int number);
 
 /// Of an attribute, or none; with `count` elements of `least` to `most` numbers.

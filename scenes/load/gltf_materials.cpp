@@ -41,7 +41,8 @@ constexpr const char* kNoPicture = " is neither PNG nor JPEG, and left out";
 std::optional<Texture> read_picture(GltfFile& reader, int number) {
   const tinygltf::Image& image = item_of(reader, reader.gltf.images, number, "image");
   const std::string what = numbered("image", static_cast<std::size_t>(number));
-  std::string bytes{image.image.begin(), image.image.end()};
+  std::string bytes = image.bufferView >= 0 ? view_bytes(reader, image.bufferView)
+                                            : std::string{image.image.begin(), image.image.end()};
   std::string name = reader.path.string() + ": " + what;
   if (bytes.empty()) {
     // tinygltf leaves out what it does not know of data.

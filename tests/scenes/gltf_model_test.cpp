@@ -417,6 +417,26 @@ TEST_CASE("a picture beside the model is found by its name with percents, and li
   CHECK(model.files == files);
 }
 
+TEST_CASE("a picture in a buffer is read, as .glb files have it, but not past its end") {
+  if (lacks_gltf()) return;
+  Gltf gltf = triangle("", ",\"material\":0");
+  const std::string png = png_bytes(4, 2);
+  const int view = gltf.view(png);
+  gltf.more =
+      material("\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}") +
+      ",\"textures\":[{\"source\":0}],\"images\":[{\"mimeType\":\"image/png\",\"bufferView\":" +
+      std::to_string(view) + "}]";
+  const Model model = load(gltf.binary(), "model.glb");
+  REQUIRE(model.textures.size() == 1);
+  CHECK(model.textures[0].levels[0].width == 4);
+  CHECK(load_texel(model.textures[0].levels[0], 0, 0) == glm::vec4{1, 0, 0, 1});
+  std::string text = gltf.text();
+  const std::string length = "\"byteLength\":" + std::to_string(png.size());
+  text.replace(text.find(length), length.size(), "\"byteLength\":99999");
+  CHECK(complaint(text) ==
+        "bufferView 1 is shorter than what is read from it, or its buffer ends before");
+}
+
 TEST_CASE("the first camera and the lights stand where their nodes are") {
   if (lacks_gltf()) return;
   Gltf gltf = triangle();

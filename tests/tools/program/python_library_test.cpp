@@ -1,8 +1,9 @@
-// The example in Python against the program: the same bits from the same arrays.
+// The package for Python (tools/python) against the program: the same bits from the same arrays.
 
 #include <doctest/doctest.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -24,107 +25,214 @@ std::string python_with_numpy() {
   return {};
 }
 
-/// Whether a command of these words, the second in quotes, ends well.
-bool done(const std::string& program, const std::string& quoted,
-          const std::vector<std::string>& words) {
-  std::string command = program + " \"" + quoted + '"';
-  for (const std::string& word : words) command.append(1, ' ').append(word);
-  return std::system(command.c_str()) == 0;
+/// What the package of tools/python needs to be found, with the library and the program of this
+/// build.
+std::string package_python(const std::string& python) {
+  return "PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=" SOFTFOCUS_TEST_DATA
+         "/../../tools/python SOFTFOCUS_LIBRARY=" SOFTFOCUS_LIBRARY
+         " SOFTFOCUS_PROGRAM=" SOFTFOCUS_PROGRAM " " +
+         python;
 }
+
+/// Runs a script with these words; what it wrote if it failed.
+std::string failure_of(const std::string& python, const std::string& script,
+                       const std::vector<std::string>& words, const std::string& module = "") {
+  const TemporaryDirectory folder;
+  write_file(folder.file("script.py"), script);
+  std::string command = package_python(python) + module + " " + folder.file("script.py");
+  for (const std::string& word : words) command.append(" ").append(word);
+  command += " >" + folder.file("said") + " 2>&1";
+  if (std::system(command.c_str()) == 0) return {};
+  return "failed: " + read_file(folder.file("said"));
+}
+
+const std::string kHead = R"py(import sys, numpy as np, softfocus
+r = np.random.default_rng(1)
+def error(call, *words, **options):
+    try: call(*words, **options)
+    except ValueError as said: return str(said)
+    raise AssertionError("no error")
+)py";
+
 }  // namespace
 #endif
 
-TEST_CASE("shade.py runs a shader on an array, and tells its errors by file and line") {
-#ifdef SOFTFOCUS_LIBRARY
-  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
-  const std::string python = python_with_numpy();
-  if (python.empty()) return skip("numpy", "no python3 with NumPy");
-  const TemporaryDirectory folder;
-  const std::string picture = folder.file("picture.npy"), result = folder.file("result.npy"),
-                    shader = folder.file("mine.frag");
-  const std::string library = "SOFTFOCUS_LIBRARY=" SOFTFOCUS_LIBRARY " " + python + " -B";
-  const std::string script = SOFTFOCUS_TEST_DATA "/../../docs/examples/embedding/shade.py";
-  const std::string make =
-      "import sys, numpy as n; n.save(sys.argv[1], n.random.default_rng(1).random((5, 7, 4), "
-      "'f4'))";
-  REQUIRE(done(python + " -c", make, {picture}));
-  write_file(shader,
-             "#version 330\nuniform sampler2D p;\nuniform vec2 gain;\nout vec4 c;\n"
-             "void main() { c = texelFetch(p, ivec2(gl_FragCoord.xy), 0) * gain.y; }\n");
-  REQUIRE(done(library, script, {shader, picture, result, "gain=0,0.5"}));
-  CHECK(done(python + " -c",
-             "import sys, numpy as n; a, b = [n.load(f) for f in sys.argv[1:]]; "
-             "sys.exit(not (a * n.float32(0.5) == b).all())",
-             {picture, result}));
-  CHECK(!done(library, script, {shader, picture, result, "gain=1", "2>/dev/null"}));
-  CHECK(done(library + " -c",
-             "import sys; sys.path.insert(0, sys.argv[1]); import shade\n"
-             "try: shade.Shader('void main() {\\n  wrong;\\n}', 'mine.frag')\n"
-             "except ValueError as e: assert str(e).startswith('mine.frag:2: '), e\n"
-             "else: sys.exit(1)",
-             {SOFTFOCUS_TEST_DATA "/../../docs/examples/embedding"}));
-#else
-  skip("", "a build without the shared library");
-#endif
-}
-
-TEST_CASE("refocus.py gives what the program writes, to the bit") {
+TEST_CASE("softfocus.refocus() gives what the program writes, to the bit") {
 #ifdef SOFTFOCUS_LIBRARY
   const std::string python = python_with_numpy();
   if (python.empty()) return skip("numpy", "no python3 with NumPy");
   const TemporaryDirectory folder;
   const std::string colour = folder.file("colour.npy"), depth = folder.file("depth.npy"),
-                    theirs = folder.file("theirs.npy"), ours = folder.file("ours.npy");
-  const std::string library = "SOFTFOCUS_LIBRARY=" SOFTFOCUS_LIBRARY " " + python;
-  const std::string script = SOFTFOCUS_TEST_DATA "/../../docs/examples/embedding/refocus.py";
-  const std::string python_line = python + " -c";
-  const std::string save = "; import sys; np.save(sys.argv[1], c); np.save(sys.argv[2], d)";
-  const std::string random = "import numpy as np; r = np.random.default_rng(1); ";
+                    theirs = folder.file("theirs.npy");
   struct Pair {
     std::string arrays;  // colour c, depth d
     std::vector<std::string> options;
-    std::vector<std::string> settings;
+    std::string settings;
   };
   for (const Pair& pair :
        {Pair{
             "c = r.random((48, 64, 3)).astype('f4'); d = (1 + 5 * r.random((48, 64))).astype('f4')",
-            {"--focus", "2.5", "--f-number", "1.4", "--fov", "30", "--method", "two-pass"},
-            {"focus_m=2.5", "f_number=1.4", "fov_y_degrees=30"}},
+            {"--focus", "2.5", "--f-number", "1.4", "--fov", "30"},
+            "focus_m=2.5, f_number=1.4, fov_y_degrees=30"},
         Pair{"c = r.integers(0, 256, (40, 30, 3), dtype='u1'); "
              "d = (1 + 5 * r.random((40, 30))).astype('f2')",
-             {"--focus", "2", "--sensor", "full-frame", "--method", "disc-layers", "--profile",
+             {"--focus", "2", "--sensor", "full-frame", "--method", "two-pass", "--profile",
               "llvmpipe", "--coc-scale", "9"},
-             {"focus_m=2", "coc_scale=9", "method=disc-layers", "profile=llvmpipe"}},
-        Pair{"c = r.random((48, 64, 3)).astype('f2'); "
+             "focus_m=2, coc_scale=9, method='two-pass', profile='llvmpipe'"},
+        Pair{"c = r.random((48, 64, 4)).astype('f2')[:, ::-1]; "
              "d = np.asfortranarray((1 + 5 * r.random((48, 64))).astype('f4'))",
              {"--focus", "3", "--blur-at-infinity", "7", "--method", "auto"},
-             {"focus_m=3", "blur_at_infinity_px=7", "method=auto"}}}) {
+             "focus_m=3, blur_at_infinity_px=7, method='auto'"}}) {
     CAPTURE(pair.arrays);
-    std::string make = random;
-    REQUIRE(done(python_line, make.append(pair.arrays).append(save), {colour, depth}));
+    const std::string arrays = kHead + pair.arrays + "\n";
+    CHECK(failure_of(python, arrays + "np.save(sys.argv[1], c[..., :3]); np.save(sys.argv[2], d)",
+                     {colour, depth}) == "");
     std::vector<std::string> words{"refocus",          colour,  depth, "-o", theirs,
                                    "--depth-encoding", "metres"};
     words.insert(words.end(), pair.options.begin(), pair.options.end());
     const ProgramRun run = run_program(words);
     CHECK(tells_depth_alone(run.err));
     REQUIRE(run.status == 0);
-    words = {colour, depth, ours};
-    words.insert(words.end(), pair.settings.begin(), pair.settings.end());
-    REQUIRE(done(library, script, words));
-    CHECK(read_file(ours) == read_file(theirs));
+    CHECK(failure_of(python,
+                     arrays + "ours = softfocus.refocus(c, d, dtype='f2', " + pair.settings +
+                         ")\nassert (ours == np.load(sys.argv[1])[..., :3]).all()\n"
+                         "out = np.zeros(c.shape[:2] + (3,), c.dtype)\n"
+                         "assert softfocus.refocus(c, d, out=out, " +
+                         pair.settings + ") is out and out.mean() > 0",
+                     {theirs}) == "");
   }
-  CHECK(!done(library, script, {colour, depth, ours, "method=none", "2>/dev/null"}));
-  CHECK(!done(library, script, {depth, depth, ours, "2>/dev/null"}));
-  CHECK(!done(library, script, {colour, depth, ours, "focus=2", "2>/dev/null"}));
-  const std::string call =
-      "import sys; sys.path.insert(0, sys.argv[1]); import numpy as n, refocus as r; "
-      "c = n.ones((8, 9, 3), 'f4'); d = n.ones((8, 9), 'f4'); ";
-  const std::vector<std::string> at{SOFTFOCUS_TEST_DATA "/../../docs/examples/embedding"};
-  CHECK(done(library + " -B -c", call + "r.refocus(c, d, method='disc-layers')", at));
-  CHECK(done(library + " -B -c",
-             call + "\ntry: r.refocus(c, d, fnumber=2)\n"
-                    "except ValueError as e: assert 'f_number' in str(e)\nelse: sys.exit(1)",
-             at));
+  CHECK(failure_of(python, kHead + R"py(
+c = np.ones((8, 9, 3)); d = np.ones((8, 9), 'f4')
+assert softfocus.refocus(c, d, threads=1).dtype == np.float32
+assert "disc-layers" in error(softfocus.refocus, c, d, method="disc-layer")
+assert "colour is (8, 9)" in error(softfocus.refocus, d, d)
+assert "depth is int64" in error(softfocus.refocus, c, d.astype("i8"))
+assert "the result is int16" in error(softfocus.refocus, c, d, dtype="i2")
+assert "f_number" in error(softfocus.refocus, c, d, f_number=-1)
+assert len(softfocus.methods()) > 20 and all(softfocus.methods().values())
+assert "llvmpipe" in softfocus.profiles()
+)py",
+                   {}) == "");
+#else
+  skip("", "a build without the shared library");
+#endif
+}
+
+TEST_CASE("softfocus.Shader runs a shader on arrays, and tells its errors by file and line") {
+#ifdef SOFTFOCUS_LIBRARY
+  if (!missing_glsl().empty()) return skip("GLSL", missing_glsl());
+  const std::string python = python_with_numpy();
+  if (python.empty()) return skip("numpy", "no python3 with NumPy");
+  CHECK(failure_of(python, kHead + R"py(
+text = """#version 330
+uniform sampler2D p;
+uniform vec2 gain;
+out vec4 c;
+void main() { c = texelFetch(p, ivec2(gl_FragCoord.xy), 0) * gain.y; }
+"""
+shader = softfocus.Shader(text, "mine.frag")
+assert sorted(shader.uniforms()) == ["gain", "p"]
+picture = r.random((5, 7, 4)).astype("f4")
+shader.set("gain", [0, 0.5])
+shader.set_texture("p", picture)
+assert (shader.run(7, 5) == picture * np.float32(0.5)).all()
+assert "gain" in error(shader.set, "gain", 1)
+assert "(h, w, 4) would do" in error(shader.set_texture, "p", picture[..., :3])
+assert "nearest, bilinear" in error(shader.set_texture, "p", picture, filter="linear")
+edge = softfocus.Shader(text.replace("texelFetch(p, ivec2(gl_FragCoord.xy), 0)",
+                   "texture(p, vec2(1.2))"))
+edge.set("gain", [0, 1])
+edge.set_texture("p", picture, filter="nearest", wrap="clamp")
+assert (edge.run(1, 1)[0, 0] == picture[-1, -1]).all()
+assert error(softfocus.Shader, "void main() {\n  wrong;\n}", "mine.frag").startswith("mine.frag:2: ")
+)py",
+                   {}) == "");
+#else
+  skip("", "a build without the shared library");
+#endif
+}
+
+TEST_CASE("softfocus.render() and compare() are the program's, and so is python -m softfocus") {
+#ifdef SOFTFOCUS_LIBRARY
+  const std::string python = python_with_numpy();
+  if (python.empty()) return skip("numpy", "no python3 with NumPy");
+  const TemporaryDirectory folder;
+  const std::string theirs = folder.file("theirs.npy");
+  REQUIRE(run_program({"render", "figures", "--size", "48x36", "-o", theirs, "--method",
+                       "accumulation", "--samples", "8"})
+              .status == 0);
+  CHECK(failure_of(python, kHead + R"py(
+picture = softfocus.render("figures", size="48x36", method="accumulation", samples=8)
+assert (picture == np.load(sys.argv[1])).all() and picture.shape == (36, 48, 4)
+same = softfocus.compare(picture, sys.argv[1])
+assert same["passes"] and same["equal"]
+other = softfocus.compare(softfocus.render("figures", size="48x36"), picture, max_flip=0.5)
+assert other["passes"] and not other["equal"] and 0 < other["flip"] < 0.5
+assert not softfocus.compare(picture * 2, picture)["passes"]
+assert "did you mean 'figures'?" in error(softfocus.render, "figurs")
+assert "one size" in error(softfocus.compare, picture, picture[1:])
+)py",
+                   {theirs}) == "");
+  const std::string command =
+      package_python(python) + " -m softfocus --version | grep -q softfocus";
+  CHECK(std::system(command.c_str()) == 0);
+#else
+  skip("", "a build without the shared library");
+#endif
+}
+
+TEST_CASE("pytest's fixture holds pictures against goldens, and takes new ones when asked") {
+#ifdef SOFTFOCUS_LIBRARY
+  const std::string python = python_with_numpy();
+  if (python.empty()) return skip("numpy", "no python3 with NumPy");
+  if (std::system((python + " -c 'import pytest' 2>/dev/null").c_str()) != 0) {
+    return skip("pytest", "no pytest");
+  }
+  const TemporaryDirectory folder;
+  const auto write_test = [&](const std::string& added) {
+    write_file(folder.file("test_it.py"),
+               "import numpy as np, pytest\n"
+               "p = np.linspace(0, 1, 12 * 16 * 3, dtype='f4').reshape(12, 16, 3)\n"
+               "def test_plain(softfocus_compare): softfocus_compare(p + np.float32(" +
+                   added +
+                   "))\n"
+                   "@pytest.mark.softfocus(max_error=.1)\n"
+                   "@pytest.mark.parametrize('k', [0, 1])\n"
+                   "def test_marked(softfocus_compare, k): softfocus_compare(p * k + np.float32(" +
+                   added +
+                   "))\n"
+                   "def test_two(softfocus_compare):\n"
+                   "    softfocus_compare(p, 'one')\n"
+                   "    softfocus_compare(p + np.float32(" +
+                   added + "), 'other', max_error=1)\n");
+  };
+  const auto run = [&](const std::string& words) {
+    const std::string command = "cd " + folder.path() + " && " + package_python(python) +
+                                " -m pytest -q -p softfocus.pytest_plugin -p no:cacheprovider " +
+                                words + " >" + folder.file("said") + " 2>&1";
+    const bool passes = std::system(command.c_str()) == 0;
+    return (passes ? "passes: " : "fails: ") + read_file(folder.file("said"));
+  };
+  write_test("0");
+  const std::string first = run("");
+  CHECK(first.starts_with("fails: "));
+  CHECK(first.find("there is none yet") != std::string::npos);
+  CHECK(first.find("4 failed") != std::string::npos);
+  CHECK(run("--softfocus-accept").starts_with("passes: "));
+  CHECK(run("").starts_with("passes: "));
+  const std::string goldens = folder.path() + "/goldens/";
+  CHECK(std::filesystem::exists(goldens + "test_marked-1.npy"));
+  CHECK(!std::filesystem::exists(goldens + "test_plain.got.npy"));
+  write_test("0.05");
+  const std::string changed = run("");
+  CHECK(changed.find("1 failed, 3 passed") != std::string::npos);
+  CHECK(changed.find("test_plain.npy: 576 of 576 values differ, by 0.05") != std::string::npos);
+  CHECK(std::filesystem::exists(goldens + "test_plain.got.npy"));
+  CHECK(std::filesystem::exists(goldens + "test_plain.diff.png"));
+  CHECK(run("--softfocus-accept").starts_with("passes: "));
+  CHECK(!std::filesystem::exists(goldens + "test_plain.got.npy"));
+  CHECK(!std::filesystem::exists(goldens + "test_plain.diff.png"));
+  CHECK(run("").starts_with("passes: "));
 #else
   skip("", "a build without the shared library");
 #endif

@@ -1,0 +1,164 @@
+"""A user's fragment shader on arrays."""
+
+from __future__ import annotations
+
+import ctypes
+from typing import TYPE_CHECKING, Any
+
+import numpy
+
+from ._calls import Context, library
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+_FRAGMENT = 1
+_FORMATS = {"uint8": 2, "float16": 4, "float32": 6}
+
+
+class _Source(ctypes.Structure):
+    """softfocus_shader_source."""
+
+    _fields_ = [
+        ("struct_size", ctypes.c_size_t),
+        ("stage", ctypes.c_int32),
+        ("text", ctypes.c_char_p),
+        ("words", ctypes.c_void_p),
+        ("word_count", ctypes.c_size_t),
+        ("name", ctypes.c_char_p),
+        ("convention", ctypes.c_char_p),
+        ("defines", ctypes.c_void_p),
+        ("define_count", ctypes.c_size_t),
+        ("read_include", ctypes.c_void_p),
+        ("user", ctypes.c_void_p),
+    ]
+
+
+class _Texels(ctypes.Structure):
+    """softfocus_texels."""
+
+    _fields_ = [
+        ("struct_size", ctypes.c_size_t),
+        ("width", ctypes.c_int32),
+        ("height", ctypes.c_int32),
+        ("format", ctypes.c_int32),
+        ("first", ctypes.c_void_p),
+        ("row_bytes", ctypes.c_ssize_t),
+        ("slices", ctypes.c_int32),
+        ("slice_bytes", ctypes.c_ssize_t),
+    ]
+
+
+class _Sampler(ctypes.Structure):
+    """softfocus_sampler."""
+
+    _fields_ = [
+        ("struct_size", ctypes.c_size_t),
+        ("filter", ctypes.c_int32),
+        ("wrap_u", ctypes.c_int32),
+        ("wrap_v", ctypes.c_int32),
+        ("compare", ctypes.c_int32),
+        ("wrap_w", ctypes.c_int32),
+    ]
+
+
+class _Pass(ctypes.Structure):
+    """softfocus_pass."""
+
+    _fields_ = [
+        ("struct_size", ctypes.c_size_t),
+        ("targets", ctypes.c_void_p),
+        ("target_count", ctypes.c_int32),
+        ("profile", ctypes.c_char_p),
+        ("budget", ctypes.c_uint64),
+    ]
+
+
+def _texels_of(array: NDArray[Any]) -> _Texels:
+    *slices, height, width, _ = array.shape
+    return _Texels(
+        ctypes.sizeof(_Texels),
+        width,
+        height,
+        _FORMATS[str(array.dtype)],
+        array.ctypes.data,
+        array.strides[-3],
+        *slices,
+    )
+
+
+class Shader:
+    """A fragment shader, compiled once: GLSL, plain or as Shadertoy, three.js, libretro and
+    gl-transitions have it. Raises ValueError with the shader's file and line.
+
+    The first row of textures and results has the smallest gl_FragCoord.y.
+    """
+
+    _FILTERS = {"nearest": 1, "bilinear": 2, "trilinear": 3}
+    _WRAPS = {"repeat": 1, "mirror": 2, "clamp": 3}
+
+    def __init__(self, text: str, name: str = "shader", *, convention: str | None = None, threads: int = 0):
+        """`name` is for errors; without a convention it is recognised by the text."""
+        self._context, self._handle = Context(threads), ctypes.c_void_p()
+        source = _Source(
+            ctypes.sizeof(_Source),
+            _FRAGMENT,
+            text.encode(),
+            name=name.encode(),
+            convention=convention.encode() if convention else None,
+        )
+        self._context.call("compile_shader", ctypes.byref(source), ctypes.byref(self._handle))
+
+    def __del__(self) -> None:
+        library().softfocus_free_shader(self._handle)
+
+    def uniforms(self) -> list[str]:
+        """The names of all uniforms and textures."""
+        names: list[str] = []
+        while name := library().softfocus_uniform_name(self._handle, ctypes.c_size_t(len(names))):
+            names.append(name.decode())
+        return names
+
+    def set(self, name: str, numbers: ArrayLike) -> None:
+        """A uniform: its numbers in order, matrices column by column."""
+        values = numpy.atleast_1d(numpy.asarray(numbers, numpy.float64)).ravel()
+        self._context.call(
+            "set_uniform",
+            self._handle,
+            name.encode(),
+            values.ctypes.data_as(ctypes.POINTER(ctypes.c_double)),
+            ctypes.c_size_t(values.size),
+        )
+
+    def set_texture(
+        self, name: str, texels: NDArray[Any], *, filter: str = "bilinear", wrap: str = "repeat"
+    ) -> None:
+        """An array (h, w, 4) of uint8, float16 or float32; (n, h, w, 4) for a sampler3D, sampler2DArray
+        or samplerCube. `filter` is nearest, bilinear or trilinear; `wrap` repeat, mirror or clamp."""
+        pixels = numpy.ascontiguousarray(texels)
+        if pixels.ndim not in (3, 4) or pixels.shape[-1] != 4 or str(pixels.dtype) not in _FORMATS:
+            raise ValueError(
+                f"{name} is {pixels.dtype} {pixels.shape}; {', '.join(_FORMATS)} of (h, w, 4) would do"
+            )
+        if filter not in self._FILTERS or wrap not in self._WRAPS:
+            raise ValueError(
+                f"{name}: one of {', '.join(self._FILTERS)} and one of {', '.join(self._WRAPS)} would do"
+            )
+        edge = self._WRAPS[wrap]
+        sampler = _Sampler(ctypes.sizeof(_Sampler), self._FILTERS[filter], edge, edge, 0, edge)
+        self._context.call(
+            "set_texture",
+            self._handle,
+            name.encode(),
+            ctypes.byref(_texels_of(pixels)),
+            ctypes.byref(sampler),
+        )
+
+    def run(self, width: int, height: int, *, profile: str = "ieee") -> NDArray[numpy.float32]:
+        """The shader's first output, (height, width, 4)."""
+        result = numpy.zeros((height, width, 4), numpy.float32)
+        target = _texels_of(result)
+        targets = (ctypes.c_void_p * 1)(ctypes.addressof(target))
+        where = _Pass(ctypes.sizeof(_Pass), ctypes.addressof(targets), 1, profile.encode())
+        self._context.call("run_shader", self._handle, ctypes.byref(where))
+        return result
