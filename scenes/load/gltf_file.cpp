@@ -40,13 +40,26 @@ std::string numbered(const char* what, std::size_t number) {
   return std::string{what} + " " + std::to_string(number);
 }
 
+std::string shortened(std::string text) {
+  constexpr std::size_t kMost = 200;
+  if (text.size() > kMost) text.replace(kMost, text.npos, "...");
+  return text;
+}
+
 namespace {
 
 constexpr std::size_t kMaxGltfBytes = std::size_t{1} << 30;
 
-bool is_any_file(const std::string& path, void*) {
+constexpr const char* kPackedGeometry = "KHR_draco_mesh_compression";
+std::string is_packed(const std::string& by) {
+  return "its geometry is packed (" + by + "); the same model without compression would do";
+}
+
+// Beside the model or below: tinygltf also looks where the program runs.
+bool is_beside(const std::string& path, void* user) {
+  const std::string folder = static_cast<const GltfFile*>(user)->path.parent_path().string();
   std::error_code unknown;
-  return std::filesystem::is_regular_file(path, unknown);
+  return path.starts_with(folder) && std::filesystem::is_regular_file(path, unknown);
 }
 
 bool read_buffer_file(std::vector<unsigned char>* bytes, std::string* error,
@@ -82,11 +95,71 @@ bool keep_picture(tinygltf::Image* image, const int, std::string*, std::string*,
   return true;
 }
 
+// tinygltf takes nested lists apart on the stack, without a limit.
+void check_nesting(const GltfFile& reader, std::string_view json) {
+  constexpr int kMostNested = 256;
+  int depth = 0;
+  bool in_text = false;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const char letter = json[i];
+    if (in_text && letter == '\\') {
+      ++i;
+    } else if (letter == '"') {
+      in_text = !in_text;
+    } else if (!in_text && (letter == '[' || letter == '{') && ++depth > kMostNested) {
+      fail_gltf(reader, "has lists in each other, deeper than " + std::to_string(kMostNested));
+    } else if (!in_text && (letter == ']' || letter == '}')) {
+      --depth;
+    }
+  }
+}
+
+// The JSON of a file: all of it, or the first chunk.
+std::string_view json_of(std::string_view bytes, bool is_binary) {
+  constexpr std::size_t kBeforeJson = 20;
+  if (!is_binary || bytes.size() < kBeforeJson) return bytes;
+  std::uint32_t length = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    length |= std::uint32_t{static_cast<unsigned char>(bytes[12 + i])} << (8 * i);
+  }
+  return bytes.substr(kBeforeJson, length);
+}
+
+// What a file may require: what is understood, and what changes looks alone.
+bool is_harmless(const std::string& extension) {
+  constexpr std::array<std::string_view, 5> kBegin = {"KHR_materials_", "KHR_texture_",
+                                                      "EXT_texture_", "KHR_lights_punctual",
+                                                      "KHR_mesh_quantization"};
+  return std::any_of(kBegin.begin(), kBegin.end(),
+                     [&](std::string_view begin) { return extension.starts_with(begin); });
+}
+
+void check_extensions(GltfFile& reader) {
+  constexpr std::array<std::string_view, 4> kUnderstood = {
+      "KHR_materials_unlit", "KHR_texture_transform", "KHR_lights_punctual",
+      "KHR_mesh_quantization"};
+  for (const std::string& name : reader.gltf.extensionsRequired) {
+    if (is_harmless(name)) continue;
+    fail_gltf(reader, name.ends_with("_compression")
+                          ? is_packed(name)
+                          : "needs " + name +
+                                ", which is not understood; the same model without "
+                                "it would do");
+  }
+  for (const std::string& name : reader.gltf.extensionsUsed) {
+    if (std::find(kUnderstood.begin(), kUnderstood.end(), name) == kUnderstood.end()) {
+      warn_gltf(reader, name + " is not understood");
+    }
+  }
+}
+
 void parse_gltf(GltfFile& reader) {
   const std::string bytes = read_file_bytes(reader.path, kMaxGltfBytes);
+  const bool is_binary = bytes.starts_with("glTF");
+  check_nesting(reader, json_of(bytes, is_binary));
   reader.model.files.push_back(reader.path);
   tinygltf::FsCallbacks callbacks{};
-  callbacks.FileExists = is_any_file;
+  callbacks.FileExists = is_beside;
   callbacks.ExpandFilePath = [](const std::string& path, void*) { return path; };
   callbacks.ReadWholeFile = read_buffer_file;
   callbacks.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&,
@@ -99,32 +172,27 @@ void parse_gltf(GltfFile& reader) {
   std::string error, warning;
   const auto size = static_cast<unsigned>(bytes.size());
   const std::string folder = reader.path.parent_path().string();
-  const bool is_binary = bytes.starts_with("glTF");
   const bool is_read =
       is_binary
           ? parser.LoadBinaryFromMemory(&reader.gltf, &error, &warning,
                                         reinterpret_cast<const unsigned char*>(bytes.data()), size,
                                         folder)
           : parser.LoadASCIIFromString(&reader.gltf, &error, &warning, bytes.data(), size, folder);
-  // Where packed geometry has no other form, there is nothing to read.
-  for (const char* const packed : {"KHR_draco_mesh_compression", "EXT_meshopt_compression"}) {
-    const std::vector<std::string>& required = reader.gltf.extensionsRequired;
-    const bool is_required = std::find(required.begin(), required.end(), packed) != required.end();
-    if (is_required || (!is_read && bytes.find(packed) != bytes.npos)) {
-      fail_gltf(reader, std::string{"its geometry is packed ("} + packed +
-                            "); the same model without compression would do");
-    }
-  }
   if (!is_read) {
+    // Packed geometry without another form has no bufferViews.
+    const bool packs =
+        error.find("bufferView") != error.npos && bytes.find(kPackedGeometry) != bytes.npos;
     std::replace(error.begin(), error.end(), '\n', ' ');
-    fail_gltf(reader, "cannot be read (" + std::string{trimmed(error)} +
-                          "); a glTF 2.0 file, .gltf or .glb, would do");
+    fail_gltf(reader, packs ? is_packed(kPackedGeometry)
+                            : "cannot be read (" + shortened(std::string{trimmed(error)}) +
+                                  "); a glTF 2.0 file, .gltf or .glb, would do");
   }
   const std::string& version = reader.gltf.asset.version;
   if (!version.starts_with("2.")) {
     fail_gltf(reader, (version.empty() ? "tells no version" : "is glTF " + version) +
                           "; a glTF 2.0 file would do");
   }
+  check_extensions(reader);
 }
 
 }  // namespace
@@ -204,8 +272,11 @@ const unsigned char* elements_of(const GltfFile& reader, int view_number, std::s
   return buffer.data.data() + view.byteOffset + offset;
 }
 
-// So many numbers in all.
-constexpr std::size_t kMostNumbers = std::size_t{1} << 29;
+bool is_whole(int type) {
+  return type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
+         type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
+         type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+}
 
 void put_sparse(const GltfFile& reader, const tinygltf::Accessor& accessor, GltfNumbers& numbers) {
   const auto& sparse = accessor.sparse;
@@ -213,7 +284,9 @@ void put_sparse(const GltfFile& reader, const tinygltf::Accessor& accessor, Gltf
   const auto count = static_cast<std::size_t>(sparse.count);
   const std::size_t component = bytes_of_component(accessor.componentType);
   const std::size_t index = bytes_of_component(sparse.indices.componentType);
-  if (index == 0) fail_gltf(reader, "a sparse accessor's indices have an unknown type");
+  if (index == 0 || !is_whole(sparse.indices.componentType)) {
+    fail_gltf(reader, "a sparse accessor's indices have an unknown type");
+  }
   std::size_t index_stride = 0, stride = 0;
   const unsigned char* places =
       elements_of(reader, sparse.indices.bufferView,
@@ -225,8 +298,8 @@ void put_sparse(const GltfFile& reader, const tinygltf::Accessor& accessor, Gltf
     const double place =
         component_at(places + i * index_stride, sparse.indices.componentType, false);
     if (!(place >= 0.0 && place < static_cast<double>(numbers.count()))) {
-      fail_gltf(reader, "a sparse accessor puts element " + std::to_string(place) + " of " +
-                            std::to_string(numbers.count()));
+      fail_gltf(reader,
+                "a sparse accessor puts an element past its " + std::to_string(numbers.count()));
     }
     for (std::size_t k = 0; k < numbers.width; ++k) {
       numbers.values[static_cast<std::size_t>(place) * numbers.width + k] = component_at(
@@ -237,15 +310,19 @@ void put_sparse(const GltfFile& reader, const tinygltf::Accessor& accessor, Gltf
 
 }  // namespace
 
-GltfNumbers read_accessor(const GltfFile& reader, int number) {
+GltfNumbers read_accessor(GltfFile& reader, int number) {
   const tinygltf::Accessor& accessor = item_of(reader, reader.gltf.accessors, number, "accessor");
   const std::size_t component = bytes_of_component(accessor.componentType);
   GltfNumbers numbers{numbers_of_type(accessor.type)};
-  if (component == 0 || numbers.width == 0 || accessor.count == 0 ||
-      accessor.count > kMostNumbers / numbers.width) {
-    fail_gltf(reader, numbered("accessor", static_cast<std::size_t>(number)) +
-                          " has a type or a count that cannot be read");
+  const std::string name = numbered("accessor", static_cast<std::size_t>(number));
+  if (component == 0 || numbers.width == 0) fail_gltf(reader, name + " has an unknown type");
+  if (accessor.count == 0) fail_gltf(reader, name + " has no elements");
+  if (accessor.count > reader.numbers_left / numbers.width) {
+    fail_gltf(reader, name + " has " + std::to_string(accessor.count) +
+                          " elements: with its copies the model has too many");
   }
+  reader.numbers_left -= accessor.count * numbers.width;
+  numbers.is_whole = is_whole(accessor.componentType) && !accessor.normalized;
   if (accessor.bufferView >= 0) {
     std::size_t stride = 0;
     const unsigned char* from = elements_of(reader, accessor.bufferView, accessor.byteOffset,
@@ -259,11 +336,11 @@ GltfNumbers read_accessor(const GltfFile& reader, int number) {
     }
   } else {
     // Zeros, of which sparse ones may be others. A file of a few bytes may not claim gigabytes.
-    constexpr std::size_t kMostZeros = std::size_t{1} << 24;
-    if (accessor.count > kMostZeros) {
-      fail_gltf(reader, numbered("accessor", static_cast<std::size_t>(number)) + " has " +
-                            std::to_string(accessor.count) + " elements and no buffer; up to " +
-                            std::to_string(kMostZeros) + " would do");
+    constexpr std::size_t kMostZeros = std::size_t{1} << 22;
+    if (accessor.count * numbers.width > kMostZeros) {
+      fail_gltf(reader, name + " has " + std::to_string(accessor.count) +
+                            " elements and no buffer; up to " +
+                            std::to_string(kMostZeros / numbers.width) + " would do");
     }
     numbers.values.resize(accessor.count * numbers.width);
   }
@@ -279,8 +356,7 @@ std::string view_bytes(const GltfFile& reader, int number) {
   return {bytes, bytes + length};
 }
 
-std::optional<GltfNumbers> read_attribute(const GltfFile& reader,
-                                          const std::map<std::string, int>& of,
+std::optional<GltfNumbers> read_attribute(GltfFile& reader, const std::map<std::string, int>& of,
                                           const std::string& name, std::size_t count,
                                           std::size_t least, std::size_t most) {
   const auto found = of.find(name);
@@ -303,6 +379,11 @@ const tinygltf::Value* extension(const tinygltf::ExtensionMap& extensions, const
 double number_in(const tinygltf::Value& object, const char* key, double fallback) {
   if (!object.IsObject() || !object.Has(key) || !object.Get(key).IsNumber()) return fallback;
   return object.Get(key).GetNumberAsDouble();
+}
+
+int index_in(const tinygltf::Value& object, const char* key) {
+  const double number = number_in(object, key, -1.0);
+  return number >= 0.0 && number <= 1e9 ? static_cast<int>(number) : -1;
 }
 
 double number_in(const tinygltf::Value& object, const char* key, std::size_t i, double fallback) {

@@ -2,6 +2,8 @@
 // A glTF file as tinygltf takes it apart, and its numbers, checked: what the readers of models
 // share.
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <glm/vec3.hpp>
@@ -30,7 +32,10 @@ struct GltfFile {
   Model model{};
   std::map<int, std::optional<std::uint32_t>> texture_of_image{};
   std::map<std::tuple<int, double, double>, std::uint32_t> opacity_of_image{};
+  /// Roughness and metallic, means of a picture.
+  std::map<int, std::array<double, 2>> means_of_image{};
   std::set<std::string> told{};
+  std::size_t numbers_left = std::size_t{1} << 30;  ///< that may still be read
 };
 
 /// Throws SceneError for what is no glTF 2.0, or needs an extension for its geometry.
@@ -60,6 +65,7 @@ const Item& item_of(const GltfFile& reader, const std::vector<Item>& items, int 
 struct GltfNumbers {
   std::size_t width = 0;  ///< of an element
   std::vector<double> values{};
+  bool is_whole = false;  ///< in the file: unsigned, and no shares
 
   std::size_t count() const { return width == 0 ? 0 : values.size() / width; }
   const double* operator[](std::size_t i) const { return values.data() + i * width; }
@@ -69,11 +75,11 @@ struct GltfNumbers {
 /// All of a bufferView.
 std::string view_bytes(const GltfFile& reader, int number);
 
-GltfNumbers read_accessor(const GltfFile& reader, int number);
+/// Throws for one without elements.
+GltfNumbers read_accessor(GltfFile& reader, int number);
 
 /// Of an attribute, or none; with `count` elements of `least` to `most` numbers.
-std::optional<GltfNumbers> read_attribute(const GltfFile& reader,
-                                          const std::map<std::string, int>& of,
+std::optional<GltfNumbers> read_attribute(GltfFile& reader, const std::map<std::string, int>& of,
                                           const std::string& name, std::size_t count,
                                           std::size_t least, std::size_t most);
 
@@ -83,5 +89,10 @@ const tinygltf::Value* extension(const tinygltf::ExtensionMap& extensions, const
 /// A number in an object, or in an array of one.
 double number_in(const tinygltf::Value& object, const char* key, double fallback);
 double number_in(const tinygltf::Value& object, const char* key, std::size_t i, double fallback);
+/// A whole number from 0 on, or -1.
+int index_in(const tinygltf::Value& object, const char* key);
+
+/// The beginning of what may be very long.
+std::string shortened(std::string text);
 
 }  // namespace softfocus

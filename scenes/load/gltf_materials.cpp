@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "raster/images/texel.h"
 #include "scenes/files/file_bytes.h"
 #include "scenes/files/texture_file.h"
 #include "scenes/make/procedural_texture.h"
@@ -54,7 +55,7 @@ std::optional<Texture> read_picture(GltfFile& reader, int number) {
     std::filesystem::path file = reader.path.parent_path() / without_percents(image.uri);
     if (!is_there(file)) file = reader.path.parent_path() / image.uri;
     if (!is_there(file)) {
-      warn_gltf(reader, "texture " + image.uri + " is missing");
+      warn_gltf(reader, "texture " + shortened(image.uri) + " is missing");
       return std::nullopt;
     }
     bytes = read_file_bytes(file, kMaxTextureBytes);
@@ -80,8 +81,14 @@ std::optional<std::uint32_t> texture_of(GltfFile& reader, int image) {
   return entry->second;
 }
 
-int image_of(const GltfFile& reader, int texture) {
-  return item_of(reader, reader.gltf.textures, texture, "texture").source;
+// The picture of a texture, or -1, with a warning.
+int image_of(GltfFile& reader, int texture) {
+  const int image = item_of(reader, reader.gltf.textures, texture, "texture").source;
+  if (image < 0) {
+    warn_gltf(reader,
+              numbered("texture", static_cast<std::size_t>(texture)) + " has no PNG or JPEG");
+  }
+  return image;
 }
 
 Wrap wrap_of(int mode) {
@@ -117,6 +124,21 @@ std::array<double, 2> means_of(const Image& picture) {
   return {green / all, blue / all};
 }
 
+// Of an image by its number, once; 1 if there is none.
+std::array<double, 2> means_of(GltfFile& reader, int image) {
+  if (image < 0) return {1.0, 1.0};
+  const auto [entry, is_new] = reader.means_of_image.try_emplace(image, std::array{1.0, 1.0});
+  if (is_new) {
+    if (const auto read = read_picture(reader, image)) entry->second = means_of(read->levels[0]);
+  }
+  return entry->second;
+}
+
+// The mean of a picture's colours, linear.
+glm::dvec3 mean_colour(const Texture& texture) {
+  return glm::dvec3{glm::vec3{load_texel(texture.levels.back(), 0, 0)}};
+}
+
 bool has_alpha(const Image& picture) {
   for (int y = 0; y < picture.height; ++y) {
     const auto texels = row<std::uint8_t>(picture, y);
@@ -147,8 +169,9 @@ void set_opacity(GltfFile& reader, const tinygltf::Material& from, int image, Ma
   const double factor = from.pbrMetallicRoughness.baseColorFactor[3];
   const bool blends = from.alphaMode == "BLEND";
   if (blends) material.opacity = static_cast<float>(std::clamp(factor, 0.0, 1.0));
-  const bool has_picture =
-      material.texture && has_alpha(reader.model.textures[*material.texture].levels[0]);
+  const std::optional<std::uint32_t> texture =
+      image >= 0 ? texture_of(reader, image) : std::nullopt;
+  const bool has_picture = texture && has_alpha(reader.model.textures[*texture].levels[0]);
   if (!has_picture) {
     if (!blends && factor < from.alphaCutoff) material.opacity = 0.0f;
     return;
@@ -157,7 +180,7 @@ void set_opacity(GltfFile& reader, const tinygltf::Material& from, int image, Ma
       {image, blends ? 0.0 : factor, blends ? -1.0 : from.alphaCutoff},
       static_cast<std::uint32_t>(reader.model.textures.size()));
   if (is_new) {
-    const Image& picture = reader.model.textures[*material.texture].levels[0];
+    const Image& picture = reader.model.textures[*texture].levels[0];
     reader.model.textures.push_back(blends ? make_opacity_texture(picture)
                                            : mask_of(picture, factor, from.alphaCutoff));
   }
@@ -189,7 +212,7 @@ ShownColour shown_colour(GltfFile& reader, const tinygltf::Material& from) {
     return {emitted, light.index, light.texCoord, &light.extensions, true};
   }
   if (largest(emitted) > 0.0) {
-    warn_gltf(reader, "material " + from.name + ": the light that it gives off is left out");
+    warn_gltf(reader, "the light that material " + from.name + " gives off is left out");
   }
   return {colour, base.index, base.texCoord, &base.extensions};
 }
@@ -203,12 +226,10 @@ Material material_of(GltfFile& reader, const tinygltf::Material& from) {
   double metallic = std::clamp(pbr.metallicFactor, 0.0, 1.0);
   double roughness = std::clamp(pbr.roughnessFactor, 0.0, 1.0);
   if (pbr.metallicRoughnessTexture.index >= 0) {
-    const int image = image_of(reader, pbr.metallicRoughnessTexture.index);
-    if (const auto read = image >= 0 ? read_picture(reader, image) : std::nullopt) {
-      const auto [rough, metal] = means_of(read->levels[0]);
-      roughness *= rough;
-      metallic *= metal;
-    }
+    const std::array<double, 2> means =
+        means_of(reader, image_of(reader, pbr.metallicRoughnessTexture.index));
+    roughness *= means[0];
+    metallic *= means[1];
   }
   const ShownColour shown = shown_colour(reader, from);
   const glm::dvec3 base = shown.factor;
@@ -224,11 +245,17 @@ Material material_of(GltfFile& reader, const tinygltf::Material& from) {
   const double square = roughness * roughness;
   const double exponent = std::clamp(2.0 / std::max(square * square, 1e-6) - 2.0, 1.0, 1024.0);
   material.shininess = static_cast<int>(exponent + 0.5);
-  const glm::dvec3 mirrored = glm::dvec3{0.04 * (1.0 - metallic)} + base * metallic;
+  const glm::dvec3 seen =
+      material.texture ? base * mean_colour(reader.model.textures[*material.texture]) : base;
+  const glm::dvec3 mirrored = glm::dvec3{0.04 * (1.0 - metallic)} + seen * metallic;
   for (int i = 0; i < 3; ++i) {
-    material.specular[i] = static_cast<float>(std::min(mirrored[i] * (exponent + 8.0) / 8.0, 1.0));
+    const double lobe = std::min(mirrored[i] * (exponent + 8.0) / 8.0, 1.0);
+    material.specular[i] = static_cast<float>(lobe * (1.0 - roughness));
   }
-  set_opacity(reader, from, image, material);
+  // Alpha is the base colour's, also of what gives off light.
+  const int base_texture = pbr.baseColorTexture.index;
+  const int of_base = base_texture >= 0 ? image_of(reader, base_texture) : -1;
+  set_opacity(reader, from, of_base, material);
   return material;
 }
 

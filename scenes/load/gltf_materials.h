@@ -5,7 +5,8 @@
 
 namespace softfocus {
 
-/// What a material shows: its base colour, or the light that it gives off, if it is black without.
+/// What a material shows: its base colour, or the light that it gives off, if that is black by its
+/// factor.
 struct ShownColour {
   glm::dvec3 factor{0.0};
   int texture = -1, uv_set = 0;

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <glm/mat4x4.hpp>
 #include <limits>
+#include <map>
 #include <span>
+#include <tuple>
 #include <utility>
 
 #include "raster/numbers/exact_math.h"
@@ -37,7 +39,7 @@ UvTransform uv_transform(const ShownColour& shown) {
   made.set = shown.uv_set;
   const tinygltf::Value* transform = extension(*shown.extensions, "KHR_texture_transform");
   if (transform == nullptr) return made;
-  made.set = static_cast<int>(number_in(*transform, "texCoord", made.set));
+  if (const int set = index_in(*transform, "texCoord"); set >= 0) made.set = set;
   for (std::size_t i = 0; i < 2; ++i) {
     const int axis = static_cast<int>(i);
     made.offset[axis] = number_in(*transform, "offset", i, 0.0);
@@ -117,9 +119,13 @@ std::vector<PlacedNode> placed_nodes(const GltfFile& reader) {
     open.pop_back();
     const tinygltf::Node& node = item_of(reader, gltf.nodes, next.node, "node");
     const auto number = static_cast<std::size_t>(next.node);
-    if (is_seen[number] || next.depth > kMostDepth) {
+    if (is_seen[number]) {
       fail_gltf(reader, numbered("node", number) +
                             " is in two places, or below itself; a tree would be right");
+    }
+    if (next.depth > kMostDepth) {
+      fail_gltf(reader, numbered("node", number) + " lies below more than " +
+                            std::to_string(kMostDepth) + " others");
     }
     is_seen[number] = true;
     placed.push_back({next.node, multiply(next.parent, own_matrix(node))});
@@ -130,9 +136,10 @@ std::vector<PlacedNode> placed_nodes(const GltfFile& reader) {
   return placed;
 }
 
-// Of a skin's joints: world of the joint times the inverse of its bind pose.
-std::vector<glm::dmat4> joint_matrices(const GltfFile& reader, const tinygltf::Skin& skin,
-                                       std::span<const PlacedNode> placed) {
+// Of a skin's joints: world of the joint times the inverse of its bind pose. `worlds` are those of
+// all nodes, null outside the scene.
+std::vector<glm::dmat4> joint_matrices(GltfFile& reader, const tinygltf::Skin& skin,
+                                       std::span<const glm::dmat4* const> worlds) {
   std::optional<GltfNumbers> inverse;
   if (skin.inverseBindMatrices >= 0) inverse = read_accessor(reader, skin.inverseBindMatrices);
   if (inverse && (inverse->width != 16 || inverse->count() < skin.joints.size())) {
@@ -140,10 +147,9 @@ std::vector<glm::dmat4> joint_matrices(const GltfFile& reader, const tinygltf::S
   }
   std::vector<glm::dmat4> matrices;
   for (std::size_t i = 0; i < skin.joints.size(); ++i) {
-    const auto found = std::find_if(placed.begin(), placed.end(), [&](const PlacedNode& node) {
-      return node.number == skin.joints[i];
-    });
-    glm::dmat4 matrix = found != placed.end() ? found->to_world : glm::dmat4{1.0};
+    item_of(reader, reader.gltf.nodes, skin.joints[i], "node");
+    const glm::dmat4* const world = worlds[static_cast<std::size_t>(skin.joints[i])];
+    glm::dmat4 matrix = world != nullptr ? *world : glm::dmat4{1.0};
     if (inverse) {
       glm::dmat4 bind{1.0};
       for (std::size_t k = 0; k < 16; ++k) {
@@ -171,17 +177,21 @@ struct GltfPart {
   Mesh mesh{};
 };
 
-void add_morph_targets(const GltfFile& reader, const tinygltf::Primitive& primitive,
-                       std::span<const double> weights, GltfNumbers& positions) {
+// Adds the targets' attribute. False if one that counts has none.
+bool add_morph_targets(GltfFile& reader, const tinygltf::Primitive& primitive,
+                       std::span<const double> weights, const std::string& name,
+                       GltfNumbers& numbers) {
+  bool have_all = true;
   for (std::size_t i = 0; i < primitive.targets.size() && i < weights.size(); ++i) {
     if (weights[i] == 0.0) continue;
-    const auto moved =
-        read_attribute(reader, primitive.targets[i], "POSITION", positions.count(), 3, 3);
+    const auto moved = read_attribute(reader, primitive.targets[i], name, numbers.count(), 3, 3);
+    have_all = have_all && moved;
     if (!moved) continue;
-    for (std::size_t k = 0; k < positions.values.size(); ++k) {
-      positions.values[k] += weights[i] * moved->values[k];
+    for (std::size_t k = 0; k < numbers.values.size(); ++k) {
+      numbers.values[k] += weights[i] * moved->values[k];
     }
   }
+  return have_all;
 }
 
 // The directions across a surface go with the inverse transpose, here times the determinant.
@@ -197,25 +207,36 @@ bool mirrors_space(const glm::dmat4& m) {
 // A vertex's matrix: the node's, or the mean of its joints'.
 class VertexMatrices {
  public:
-  VertexMatrices(const GltfFile& reader, const tinygltf::Primitive& primitive, std::size_t count,
+  VertexMatrices(GltfFile& reader, const tinygltf::Primitive& primitive, std::size_t count,
                  const glm::dmat4& to_world, std::span<const glm::dmat4> joints)
       : to_world_(to_world), joints_(joints) {
-    if (joints.empty()) return;
-    numbers_ = read_attribute(reader, primitive.attributes, "JOINTS_0", count, 4, 4);
-    weights_ = read_attribute(reader, primitive.attributes, "WEIGHTS_0", count, 4, 4);
+    for (int set = 0; !joints.empty(); ++set) {
+      const std::string end = std::to_string(set);
+      auto numbers = read_attribute(reader, primitive.attributes, "JOINTS_" + end, count, 4, 4);
+      auto weights = read_attribute(reader, primitive.attributes, "WEIGHTS_" + end, count, 4, 4);
+      if (!numbers || !weights) break;
+      for (const double joint : numbers->values) {
+        if (!(joint >= 0.0 && joint < static_cast<double>(joints.size()))) {
+          fail_gltf(reader, "a vertex names a joint past the " + std::to_string(joints.size()) +
+                                " of its skin");
+        }
+      }
+      sets_.push_back({std::move(*numbers), std::move(*weights)});
+    }
   }
   glm::dmat4 operator()(std::size_t vertex) const {
-    if (!numbers_ || !weights_) return to_world_;
     glm::dmat4 mean{0.0};
     double all = 0.0;
-    for (std::size_t i = 0; i < 4; ++i) {
-      const double weight = (*weights_)[vertex][i], joint = (*numbers_)[vertex][i];
-      if (!(weight > 0.0) || !(joint >= 0.0 && joint < static_cast<double>(joints_.size()))) {
-        continue;
+    for (const Set& set : sets_) {
+      for (std::size_t i = 0; i < 4; ++i) {
+        const double weight = set.weights[vertex][i];
+        if (!(weight > 0.0)) continue;
+        const glm::dmat4& of = joints_[static_cast<std::size_t>(set.joints[vertex][i])];
+        for (int column = 0; column < 4; ++column) {
+          mean[column] = mean[column] + of[column] * weight;
+        }
+        all += weight;
       }
-      const glm::dmat4& of = joints_[static_cast<std::size_t>(joint)];
-      for (int column = 0; column < 4; ++column) mean[column] = mean[column] + of[column] * weight;
-      all += weight;
     }
     if (all == 0.0) return to_world_;
     for (int column = 0; column < 4; ++column) mean[column] = mean[column] / all;
@@ -223,27 +244,41 @@ class VertexMatrices {
   }
 
  private:
+  struct Set {
+    GltfNumbers joints, weights;
+  };
   const glm::dmat4& to_world_;
   std::span<const glm::dmat4> joints_;
-  std::optional<GltfNumbers> numbers_, weights_;
+  std::vector<Set> sets_{};
 };
 
-PlacedVertices place_vertices(const GltfFile& reader, const tinygltf::Primitive& primitive,
+glm::vec3 vertex_colour(const double* colour) {
+  glm::vec3 made{0.0f};
+  for (int k = 0; k < 3; ++k) {
+    if (colour[k] > 0.0) made[k] = static_cast<float>(std::min(colour[k], 1.0));
+  }
+  return made;
+}
+
+// A primitive's attributes; its vertices `used` alone are placed: several primitives may share
+// them.
+PlacedVertices place_vertices(GltfFile& reader, const tinygltf::Primitive& primitive,
+                              GltfNumbers positions, std::span<const std::uint32_t> used,
                               std::span<const double> morph_weights, const UvTransform& uvs,
                               const glm::dmat4& to_world, std::span<const glm::dmat4> joints) {
-  const auto found = primitive.attributes.find("POSITION");
-  GltfNumbers positions = read_accessor(reader, found->second);
-  if (positions.width != 3) fail_gltf(reader, "POSITION is not of three numbers");
-  add_morph_targets(reader, primitive, morph_weights, positions);
   const std::size_t count = positions.count();
-  const auto normals = read_attribute(reader, primitive.attributes, "NORMAL", count, 3, 3);
+  add_morph_targets(reader, primitive, morph_weights, "POSITION", positions);
+  auto normals = read_attribute(reader, primitive.attributes, "NORMAL", count, 3, 3);
+  if (normals && !add_morph_targets(reader, primitive, morph_weights, "NORMAL", *normals)) {
+    normals.reset();
+  }
   const auto coordinates = read_attribute(reader, primitive.attributes,
                                           "TEXCOORD_" + std::to_string(uvs.set), count, 2, 2);
   const auto colours = read_attribute(reader, primitive.attributes, "COLOR_0", count, 3, 4);
   const VertexMatrices matrices(reader, primitive, count, to_world, joints);
   PlacedVertices placed;
-  placed.positions.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
+  placed.positions.reserve(used.size());
+  for (const std::uint32_t i : used) {
     const glm::dmat4 matrix = matrices(i);
     const glm::dvec3 p = place(matrix, positions.vec3(i));
     for (int axis = 0; axis < 3; ++axis) {
@@ -262,27 +297,25 @@ PlacedVertices place_vertices(const GltfFile& reader, const tinygltf::Primitive&
           std::fabs(uv.x) <= kLargestCoordinate && std::fabs(uv.y) <= kLargestCoordinate;
       placed.uvs.push_back(is_number ? uv : glm::vec2{0.0f});
     }
-    if (colours) {
-      glm::vec3 colour{0.0f};
-      for (int k = 0; k < 3; ++k) {
-        const double value = (*colours)[i][k];
-        colour[k] = value > 0.0 ? static_cast<float>(std::min(value, 1.0)) : 0.0f;
-      }
-      placed.colours.push_back(colour);
+    if (colours) placed.colours.push_back(vertex_colour((*colours)[i]));
+    if (colours && colours->width == 4 && (*colours)[i][3] < 1.0) {
+      warn_gltf(reader, "the opacity of vertex colours is left out");
     }
   }
   return placed;
 }
 
 // The corners of triangles, of lists, strips and fans.
-std::vector<std::uint32_t> corners_of(const GltfFile& reader, const tinygltf::Primitive& primitive,
+std::vector<std::uint32_t> corners_of(GltfFile& reader, const tinygltf::Primitive& primitive,
                                       std::size_t count) {
   std::vector<std::uint32_t> order;
   if (primitive.indices >= 0) {
     const GltfNumbers indices = read_accessor(reader, primitive.indices);
-    if (indices.width != 1) fail_gltf(reader, "indices are not of one number");
+    if (indices.width != 1 || !indices.is_whole) {
+      fail_gltf(reader, "indices are not unsigned whole numbers");
+    }
     for (const double index : indices.values) {
-      if (!(index >= 0.0 && index < static_cast<double>(count))) {
+      if (index >= static_cast<double>(count)) {
         fail_gltf(reader, "an index is " + std::to_string(static_cast<long long>(index)) + " of " +
                               std::to_string(count) + " vertices");
       }
@@ -306,14 +339,18 @@ std::vector<std::uint32_t> corners_of(const GltfFile& reader, const tinygltf::Pr
   return corners;
 }
 
+struct GltfParts {
+  std::vector<GltfPart> parts{};
+  std::map<std::tuple<std::uint32_t, bool, bool>, std::size_t> number_of{};
+  std::size_t corners = 0;  // of all
+};
+
 // The part for a material, with or without coordinates and colours.
-GltfPart& part_for(std::vector<GltfPart>& parts, std::uint32_t material, bool has_uvs,
-                   bool has_colours) {
-  const auto found = std::find_if(parts.begin(), parts.end(), [&](const GltfPart& part) {
-    return part.material == material && part.has_uvs == has_uvs && part.has_colours == has_colours;
-  });
-  return found != parts.end() ? *found
-                              : parts.emplace_back(GltfPart{material, has_uvs, has_colours});
+GltfPart& part_for(GltfParts& all, std::uint32_t material, bool has_uvs, bool has_colours) {
+  const auto [entry, is_new] =
+      all.number_of.try_emplace({material, has_uvs, has_colours}, all.parts.size());
+  if (is_new) all.parts.emplace_back(GltfPart{material, has_uvs, has_colours});
+  return all.parts[entry->second];
 }
 
 void append_vertex(GltfPart& part, const PlacedVertices& from, std::size_t i, glm::dvec3 normal) {
@@ -347,25 +384,64 @@ void append_triangles(GltfPart& part, const PlacedVertices& from,
   }
 }
 
-void add_mesh(GltfFile& reader, const tinygltf::Node& node, const PlacedNode& placed,
-              std::span<const PlacedNode> all, std::vector<GltfPart>& parts) {
+// Gives vertices numbers in the order of their first use; the used ones by these.
+std::vector<std::uint32_t> used_vertices(std::span<std::uint32_t> corners, std::size_t count) {
+  constexpr std::uint32_t kUnused = ~std::uint32_t{0};
+  std::vector<std::uint32_t> number_of(count, kUnused), used;
+  for (std::uint32_t& corner : corners) {
+    if (number_of[corner] == kUnused) {
+      number_of[corner] = static_cast<std::uint32_t>(used.size());
+      used.push_back(corner);
+    }
+    corner = number_of[corner];
+  }
+  return used;
+}
+
+// Whether the primitive is triangles that can be read; a warning tells what it is otherwise.
+bool is_drawn(GltfFile& reader, const tinygltf::Primitive& primitive) {
+  const bool are_triangles = primitive.mode == TINYGLTF_MODE_TRIANGLES ||
+                             primitive.mode == TINYGLTF_MODE_TRIANGLE_STRIP ||
+                             primitive.mode == TINYGLTF_MODE_TRIANGLE_FAN;
+  if (!are_triangles) {
+    warn_gltf(reader, "points and lines are left out");
+    return false;
+  }
+  const auto positions = primitive.attributes.find("POSITION");
+  if (positions == primitive.attributes.end()) {
+    warn_gltf(reader, "a primitive without positions is left out");
+    return false;
+  }
+  const tinygltf::Accessor& accessor =
+      item_of(reader, reader.gltf.accessors, positions->second, "accessor");
+  const bool is_packed = accessor.bufferView < 0 && !accessor.sparse.isSparse &&
+                         extension(primitive.extensions, "KHR_draco_mesh_compression") != nullptr;
+  if (is_packed) {
+    fail_gltf(reader,
+              "its geometry is packed (KHR_draco_mesh_compression); the same model without "
+              "compression would do");
+  }
+  const bool is_empty =
+      accessor.count == 0 ||
+      (primitive.indices >= 0 &&
+       item_of(reader, reader.gltf.accessors, primitive.indices, "accessor").count == 0);
+  if (is_empty) warn_gltf(reader, "a primitive without vertices is left out");
+  return !is_empty;
+}
+
+// Of all parts together.
+constexpr std::size_t kMostGltfCorners = std::size_t{1} << 26;
+
+void add_mesh(GltfFile& reader, const tinygltf::Node& node, const glm::dmat4& to_world,
+              std::span<const glm::dmat4* const> worlds, GltfParts& parts) {
   const tinygltf::Mesh& mesh = item_of(reader, reader.gltf.meshes, node.mesh, "mesh");
   std::vector<glm::dmat4> joints;
   if (node.skin >= 0) {
-    joints = joint_matrices(reader, item_of(reader, reader.gltf.skins, node.skin, "skin"), all);
+    joints = joint_matrices(reader, item_of(reader, reader.gltf.skins, node.skin, "skin"), worlds);
   }
   const std::vector<double>& weights = node.weights.empty() ? mesh.weights : node.weights;
   for (const tinygltf::Primitive& primitive : mesh.primitives) {
-    if (primitive.mode != -1 && primitive.mode != TINYGLTF_MODE_TRIANGLES &&
-        primitive.mode != TINYGLTF_MODE_TRIANGLE_STRIP &&
-        primitive.mode != TINYGLTF_MODE_TRIANGLE_FAN) {
-      warn_gltf(reader, "points and lines are left out");
-      continue;
-    }
-    if (!primitive.attributes.contains("POSITION")) {
-      warn_gltf(reader, "a primitive without positions is left out");
-      continue;
-    }
+    if (!is_drawn(reader, primitive)) continue;
     const auto material = static_cast<std::uint32_t>(
         primitive.material >= 0 ? primitive.material
                                 : static_cast<int>(reader.gltf.materials.size()));
@@ -374,12 +450,19 @@ void add_mesh(GltfFile& reader, const tinygltf::Node& node, const PlacedNode& pl
       uvs = uv_transform(shown_colour(
           reader, item_of(reader, reader.gltf.materials, primitive.material, "material")));
     }
-    const PlacedVertices vertices =
-        place_vertices(reader, primitive, weights, uvs, placed.to_world, joints);
-    const std::vector<std::uint32_t> corners =
-        corners_of(reader, primitive, vertices.positions.size());
+    GltfNumbers positions = read_accessor(reader, primitive.attributes.at("POSITION"));
+    if (positions.width != 3) fail_gltf(reader, "POSITION is not of three numbers");
+    std::vector<std::uint32_t> corners = corners_of(reader, primitive, positions.count());
+    const std::vector<std::uint32_t> used = used_vertices(corners, positions.count());
+    parts.corners += corners.size();
+    if (parts.corners > kMostGltfCorners) {
+      fail_gltf(reader, "with its copies the model has more than " +
+                            std::to_string(kMostGltfCorners / 3) + " triangles");
+    }
+    const PlacedVertices vertices = place_vertices(reader, primitive, std::move(positions), used,
+                                                   weights, uvs, to_world, joints);
     append_triangles(part_for(parts, material, !vertices.uvs.empty(), !vertices.colours.empty()),
-                     vertices, corners, joints.empty() && mirrors_space(placed.to_world));
+                     vertices, corners, mirrors_space(to_world));
   }
 }
 
@@ -393,6 +476,10 @@ void finish_parts(GltfFile& reader, std::vector<GltfPart>& parts) {
       high = glm::max(high, p);
     }
   }
+  constexpr double kSmallest = 1e-9;  // lengths are squared in binary32
+  if (!(std::max({high.x - low.x, high.y - low.y, high.z - low.z}) >= kSmallest)) {
+    fail_gltf(reader, "has no size; a model at least 1e-9 across would be right");
+  }
   Model& model = reader.model;
   model.origin = far_middle(low, high);
   if (model.origin != glm::dvec3{0.0}) {
@@ -400,6 +487,7 @@ void finish_parts(GltfFile& reader, std::vector<GltfPart>& parts) {
   }
   for (GltfPart& part : parts) {
     for (const glm::dvec3& p : part.positions) part.mesh.positions.emplace_back(p - model.origin);
+    part.positions = {};
     model.parts.push_back({std::move(part.mesh), part.material});
   }
 }
@@ -408,14 +496,26 @@ void add_camera(GltfFile& reader, const tinygltf::Node& node, const glm::dmat4& 
   const tinygltf::Camera& from = item_of(reader, reader.gltf.cameras, node.camera, "camera");
   if (reader.model.camera) return;
   const double fov = from.perspective.yfov * 57.295779513082320877;
-  if (from.type != "perspective" || !(fov > 0.1 && fov < 170.0)) {
+  if (from.type != "perspective") {
     warn_gltf(reader, "a camera that is not perspective is left out");
     return;
   }
+  const glm::dvec3 place_of_eye{to_world[3]};
+  const glm::dvec3 back = normalize(glm::dvec3{to_world[2]}),
+                   up = normalize(glm::dvec3{to_world[1]});
+  const glm::dvec3 right = cross(up, back);
+  const bool can_look = std::max({std::fabs(place_of_eye.x), std::fabs(place_of_eye.y),
+                                  std::fabs(place_of_eye.z)}) <= kLargestCoordinate &&
+                        dot(right, right) > 1e-6;
+  if (!(fov > 0.1 && fov < 170.0) || !can_look) {
+    warn_gltf(reader, "a camera of " + std::to_string(fov) +
+                          " degrees, or without a direction, is left out");
+    return;
+  }
   Camera camera;
-  camera.position = glm::dvec3{to_world[3]} - reader.model.origin;
-  camera.target = camera.position - normalize(glm::dvec3{to_world[2]});
-  camera.up = normalize(glm::dvec3{to_world[1]});
+  camera.position = place_of_eye - reader.model.origin;
+  camera.target = camera.position - back;
+  camera.up = up;
   camera.fov_y_degrees = fov;
   reader.model.camera = camera;
 }
@@ -423,13 +523,17 @@ void add_camera(GltfFile& reader, const tinygltf::Node& node, const glm::dmat4& 
 void add_light(GltfFile& reader, const tinygltf::Node& node, const glm::dmat4& to_world,
                glm::dvec3 middle, double size) {
   const tinygltf::Value* named = extension(node.extensions, "KHR_lights_punctual");
-  const int number = named != nullptr ? static_cast<int>(number_in(*named, "light", -1.0)) : -1;
+  const int number = named != nullptr ? index_in(*named, "light") : -1;
   if (number < 0 || static_cast<std::size_t>(number) >= reader.gltf.lights.size()) return;
   const tinygltf::Light& from = reader.gltf.lights[static_cast<std::size_t>(number)];
   Light light;
   double throws = from.intensity;
   if (from.type == "directional") {
     light.position_or_direction = glm::vec3{normalize(glm::dvec3{to_world[2]})};
+    if (dot(light.position_or_direction, light.position_or_direction) == 0.0f) {
+      warn_gltf(reader, "a light without a direction is left out");
+      return;
+    }
   } else {
     if (from.type == "spot") warn_gltf(reader, "a spot light shines in all directions");
     light.kind = LightKind::point;
@@ -446,7 +550,8 @@ void add_light(GltfFile& reader, const tinygltf::Node& node, const glm::dmat4& t
   reader.model.lights.push_back(light);
 }
 
-void level_lights(Model& model) {
+void level_lights(GltfFile& reader) {
+  Model& model = reader.model;
   float most = 0.0f;
   for (const Light& light : model.lights) {
     most = std::max({most, light.colour.x, light.colour.y, light.colour.z});
@@ -456,6 +561,18 @@ void level_lights(Model& model) {
     return;
   }
   for (Light& light : model.lights) light.colour = light.colour / most;
+  // As many as a scene file may have, the brightest.
+  constexpr std::size_t kMostGltfLights = 64;
+  const auto brightness = [](const Light& light) {
+    return light.colour.x + light.colour.y + light.colour.z;
+  };
+  if (model.lights.size() > kMostGltfLights) {
+    warn_gltf(reader, "of " + std::to_string(model.lights.size()) + " lights the brightest " +
+                          std::to_string(kMostGltfLights) + " are there");
+    std::stable_sort(model.lights.begin(), model.lights.end(),
+                     [&](const Light& a, const Light& b) { return brightness(a) > brightness(b); });
+    model.lights.resize(kMostGltfLights);
+  }
 }
 
 }  // namespace
@@ -463,17 +580,24 @@ void level_lights(Model& model) {
 Model load_gltf_model(const std::filesystem::path& file) {
   GltfFile reader = open_gltf(file);
   const tinygltf::Model& gltf = reader.gltf;
-  for (const tinygltf::Material& material : gltf.materials) {
-    reader.model.materials.push_back(material_of(reader, material));
-  }
-  Material white;
-  white.ambient = white.diffuse = glm::vec3{0.5f};
-  reader.model.materials.push_back(white);
   const std::vector<PlacedNode> placed = placed_nodes(reader);
-  std::vector<GltfPart> parts;
+  std::vector<const glm::dmat4*> worlds(gltf.nodes.size());
+  for (const PlacedNode& at : placed) worlds[static_cast<std::size_t>(at.number)] = &at.to_world;
+  GltfParts grown;
   for (const PlacedNode& at : placed) {
     const tinygltf::Node& node = gltf.nodes[static_cast<std::size_t>(at.number)];
-    if (node.mesh >= 0) add_mesh(reader, node, at, placed, parts);
+    if (node.mesh >= 0) add_mesh(reader, node, at.to_world, worlds, grown);
+  }
+  std::vector<GltfPart>& parts = grown.parts;
+  // Pictures of the materials that are used alone are read; the last is for none.
+  reader.model.materials.resize(gltf.materials.size());
+  reader.model.materials.push_back(material_of(reader, tinygltf::Material{}));
+  std::vector<bool> is_read(reader.model.materials.size());
+  is_read.back() = true;
+  for (const GltfPart& part : parts) {
+    if (is_read[part.material]) continue;
+    is_read[part.material] = true;
+    reader.model.materials[part.material] = material_of(reader, gltf.materials[part.material]);
   }
   parts.erase(std::remove_if(parts.begin(), parts.end(),
                              [](const GltfPart& part) { return part.mesh.indices.empty(); }),
@@ -495,7 +619,7 @@ Model load_gltf_model(const std::filesystem::path& file) {
     if (node.camera >= 0) add_camera(reader, node, at.to_world);
     add_light(reader, node, at.to_world, middle, size);
   }
-  level_lights(reader.model);
+  level_lights(reader);
   if (!gltf.animations.empty()) warn_gltf(reader, "animations are left out");
   return std::move(reader.model);
 }

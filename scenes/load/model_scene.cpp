@@ -122,6 +122,11 @@ void set_near_and_far(Scene& scene) {
   });
   camera.far_m = farthest > 0.0 ? 1.5 * farthest : 100.0;
   camera.near_m = std::max(std::min(nearest, camera.far_m) * 0.5, camera.far_m * 1e-4);
+  // Where it looks at nothing, the middle of the depths is the focus.
+  if (farthest > 0.0) {
+    const glm::dvec3 forwards = normalize(camera.target - camera.position);
+    camera.target = camera.position + forwards * ((nearest + farthest) / 2.0);
+  }
 }
 
 void fit_lens(Scene& scene) {

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <span>
+#include <utility>
 
 #include "raster/threads/loops.h"
 
@@ -25,23 +27,48 @@ EdgePlane edge_plane(std::span<const glm::dvec3> polygon, std::size_t i, const S
   return {dot(across, inside - a) < 0.0 ? -across : across, a};
 }
 
+// A receiver, and where on it shadows are wanted.
+struct Target {
+  std::uint32_t receiver;
+  std::span<const glm::dvec3> outline;
+};
+
 // A receiver with its normal on the light's side.
 struct LitReceiver {
   FacetPlane plane;
   double light_height;  // a cosine if the light is directional
-  std::span<const glm::dvec3> outline;
-  std::array<EdgePlane, 8> edges;  // of the outline
+  std::span<const glm::dvec3> whole;
+  std::span<const glm::dvec3> outline;  // of the part that is wanted
+  std::array<EdgePlane, 8> edges;       // of that
   std::size_t edge_count = 0;
 };
 
-LitReceiver lit_receiver(FacetPlane plane, std::span<const glm::dvec3> outline,
+// The plane through the light and the outline's edge from corner i on, with the outline on its
+// positive side. None of an edge that is too short for that, or points at the light.
+std::optional<EdgePlane> outline_edge(std::span<const glm::dvec3> outline, std::size_t i,
+                                      const ShadowLight& light) {
+  EdgePlane edge = edge_plane(outline, i, light);
+  edge.across = normalize(edge.across);
+  double low = 0.0, high = 0.0;
+  for (const glm::dvec3& p : outline) {
+    const double d = dot(edge.across, p - edge.on_it);
+    low = std::min(low, d);
+    high = std::max(high, d);
+  }
+  const double inside = std::max(high, -low), outside = std::min(high, -low);
+  constexpr double kNothing = 0x1p-40;  // of the outline
+  if (!(inside > 0.0) || outside > kNothing * inside) return {};
+  if (-low > high) edge.across = -edge.across;
+  return edge;
+}
+
+LitReceiver lit_receiver(const Receiver& receiver, std::span<const glm::dvec3> outline,
                          const ShadowLight& light, LitSide side) {
+  FacetPlane plane = receiver.plane;
   if (side == LitSide::back) plane = {-plane.normal, -plane.offset};
-  LitReceiver lit{plane, height_over(plane, light), outline, {}};
-  for (std::size_t i = 0; i < lit.outline.size(); ++i) {
-    EdgePlane edge = edge_plane(lit.outline, i, light);
-    edge.across = normalize(edge.across);
-    if (edge.across != glm::dvec3{0.0}) lit.edges[lit.edge_count++] = edge;
+  LitReceiver lit{plane, height_over(plane, light), receiver.corners_of_outline(), outline, {}};
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    if (const auto edge = outline_edge(outline, i, light)) lit.edges[lit.edge_count++] = *edge;
   }
   return lit;
 }
@@ -130,7 +157,7 @@ bool is_elsewhere(std::span<const glm::dvec3> polygon, std::span<const glm::dvec
 bool stands_behind(const FacetPlane& caster, const LitReceiver& receiver, const ShadowLight& light,
                    double epsilon_m) {
   const double side = height_over(caster, light) > 0.0 ? 1.0 : -1.0;
-  return std::all_of(receiver.outline.begin(), receiver.outline.end(), [&](const glm::dvec3& p) {
+  return std::all_of(receiver.whole.begin(), receiver.whole.end(), [&](const glm::dvec3& p) {
     return side * height_over(caster, p) >= -epsilon_m;
   });
 }
@@ -147,7 +174,7 @@ bool misses(const Facets& facets, std::uint32_t caster, const LitReceiver& recei
   for (std::size_t i = 0; i < corners.size(); ++i) {
     if (is_beside_unscaled(edge_plane(corners, i, light), receiver.outline, margin)) return true;
   }
-  return is_elsewhere(receiver.outline, corners, light, margin);
+  return is_elsewhere(receiver.whole, corners, light, margin);
 }
 
 // A caster's fate, as far as it is known beforehand.
@@ -197,12 +224,6 @@ CasterPolygon shadow_of(const Facets& facets, std::uint32_t caster, const LitRec
   return shadow;
 }
 
-// A receiver, and where on it shadows are wanted.
-struct Target {
-  std::uint32_t receiver;
-  std::span<const glm::dvec3> outline;
-};
-
 Target target_of(const Facets& facets, std::uint32_t receiver) {
   return {receiver, facets.receivers[receiver].corners_of_outline()};
 }
@@ -213,7 +234,7 @@ void for_each_shadow(const Facets& facets, const Target& target, const ShadowLig
                      LitSide side, std::span<const std::uint32_t> casters, Throws known,
                      const Use& use) {
   const LitReceiver receiver =
-      lit_receiver(facets.receivers[target.receiver].plane, target.outline, light, side);
+      lit_receiver(facets.receivers[target.receiver], target.outline, light, side);
   for (const std::uint32_t caster : casters) {
     if (facets.receiver_of[caster] == target.receiver) continue;
     const CasterPolygon polygon = shadow_of(facets, caster, receiver, light, known);

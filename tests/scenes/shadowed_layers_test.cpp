@@ -448,6 +448,39 @@ TEST_CASE("of a receiver is wanted what the view shows of it, and little more") 
         0.5 * area(shadows.facets.receivers[ground].corners_of_outline()));
 }
 
+TEST_CASE("a wall whose corners or edges lie on the picture's keeps its shadows") {
+  ThreadPool pool{1};
+  for (const double turned : {0.0, 45.0}) {
+    CAPTURE(turned);
+    Scene scene = test::shadow_scene(ShadowKind::projected);
+    scene.camera.position = {0.0, 0.0, 2.0};
+    scene.camera.target = {};
+    scene.camera.fov_y_degrees = 53.130102354155978;  // 1 m up and down, 2 m away
+    scene.lights[0].position_or_direction = {0.3f, 0.4f, 3.0f};
+    scene.lights[1].position_or_direction = {-0.2f, 0.1f, 1.0f};
+    const double side = turned == 0.0 ? 2.0 : std::sqrt(2.0);
+    scene.meshes[0] = make_plane(side, side, 1, 1);
+    scene.objects[0].rotation_degrees = {90.0, 0.0, turned};
+    scene.objects[1].position = {0.1, 0.05, 0.8};
+    scene.objects[1].scale = glm::dvec3{0.3};
+    scene.objects.resize(2);
+    set_shadows(scene, ShadowKind::projected);
+    const CameraMatrices camera = camera_matrices(scene.camera, 0.0, 64, 64);
+    PreparedScene onto_seen = prepare_scene(scene, {}, pool);
+    PreparedScene onto_all = prepare_scene(scene, {}, pool);
+    place_shadows(*onto_all.shadows, scene, scene.lights, 0.0, pool);
+    Image a = make_image(Format::rgba16f, 64, 64), b = a;
+    draw_scene(onto_seen, camera, 0.0, a, pool);
+    draw_scene(onto_all, camera, 0.0, b, pool);
+    CHECK(!onto_seen.shadows->projected[0].of_all);
+    CHECK(onto_all.shadows->projected[0].of_all);
+    CHECK(onto_seen.shadows->masks == onto_all.shadows->masks);
+    CHECK(equal(a, b));
+    const std::vector<std::uint8_t>& mask = onto_all.shadows->masks[0];
+    CHECK(std::count(mask.begin(), mask.end(), 0) + 50 < 64 * 64);
+  }
+}
+
 TEST_CASE("objects that something else is drawn for are no facets that take shadows") {
   const Scene scene = test::shadow_scene(ShadowKind::projected);
   ThreadPool pool(1);
