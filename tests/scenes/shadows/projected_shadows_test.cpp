@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <vector>
 
 #include "tests/support/random.h"
@@ -243,16 +244,15 @@ TEST_CASE("a part of a floor gets the shadows that touch it, and few others") {
   add_quad(corners, {-9, -2, 9}, {9, -2, 9}, {9, -2, -9}, {-9, -2, -9});
   const Facets facets = make_facets(std::move(corners));
   WantedReceiver part = whole(facets, facets.receiver_of[400]);
-  // Eight corners around the middle, none of which is one of the floor's.
-  for (std::size_t i = 0; i < 8; ++i) {
-    const double angle = 0.3 + 0.785398 * static_cast<double>(i);
-    part.outline[i] = {0.4 * std::cos(angle), -2, 0.4 * std::sin(angle)};
-  }
   part.corners = 8;
+  const auto corner = [](double eighth) {
+    const double angle = 0.3 + 0.785398 * eighth;
+    return glm::dvec3{0.4 * std::cos(angle), -2, 0.4 * std::sin(angle)};
+  };
   const auto inside = [&](glm::dvec3 p) {
     for (std::size_t i = 0; i < 8; ++i) {
       const glm::dvec3 a = part.outline[i], b = part.outline[(i + 1) % 8];
-      if ((b.x - a.x) * (p.z - a.z) - (b.z - a.z) * (p.x - a.x) < 0.0) return false;
+      if ((b.x - a.x) * (p.z - a.z) - (b.z - a.z) * (p.x - a.x) < -1e-12) return false;
     }
     return true;
   };
@@ -267,23 +267,34 @@ TEST_CASE("a part of a floor gets the shadows that touch it, and few others") {
     }
     return false;
   };
+  // Eight corners around the middle, none of which is one of the floor's; four that are there
+  // twice, in either order; four, and the middles between them.
+  const auto eight = [&](std::size_t i) { return corner(static_cast<double>(i)); };
+  const auto twice = [&](std::size_t i) { return corner(static_cast<double>(i / 2 * 2)); };
+  const auto almost = [&](std::size_t i) { return twice(i) * (i % 2 == 0 ? 1.0 : 1.0 + 0x1p-52); };
+  const auto between = [&](std::size_t i) { return (twice(i) + twice((i + 1) % 8)) * 0.5; };
+  const std::vector<std::function<glm::dvec3(std::size_t)>> outlines{eight, twice, almost, between};
   ThreadPool pool{2};
-  for (const ShadowLight& light :
-       {ShadowLight{normalize(glm::dvec3{0.3, 1, 0.2}), 0.0}, ShadowLight{{0.5, 6, 1}, 1.0}}) {
-    const ProjectedShadows all = project_by_grid(facets, light, pool);
-    const ProjectedShadows some = project_onto({&part, 1}, facets, light, pool);
-    std::size_t kept = 0, touching = 0;
-    for (std::size_t i = all.begins[part.receiver]; i < all.begins[part.receiver + 1]; ++i) {
-      const bool is_kept = kept < some.triangles.size() && some.triangles[kept] == all.triangles[i];
-      kept += is_kept ? 1 : 0;
-      const bool does_touch = touches(all.triangles[i]);
-      touching += does_touch ? 1 : 0;
-      REQUIRE((is_kept || !does_touch));
+  for (const auto& outline : outlines) {
+    for (std::size_t i = 0; i < 8; ++i) part.outline[i] = outline(i);
+    for (const ShadowLight& light :
+         {ShadowLight{normalize(glm::dvec3{0.3, 1, 0.2}), 0.0}, ShadowLight{{0.5, 6, 1}, 1.0}}) {
+      const ProjectedShadows all = project_by_grid(facets, light, pool);
+      const ProjectedShadows some = project_onto({&part, 1}, facets, light, pool);
+      std::size_t kept = 0, touching = 0;
+      for (std::size_t i = all.begins[part.receiver]; i < all.begins[part.receiver + 1]; ++i) {
+        const bool is_kept =
+            kept < some.triangles.size() && some.triangles[kept] == all.triangles[i];
+        kept += is_kept ? 1 : 0;
+        const bool does_touch = touches(all.triangles[i]);
+        touching += does_touch ? 1 : 0;
+        REQUIRE((is_kept || !does_touch));
+      }
+      CHECK(kept == some.triangles.size());
+      CHECK(touching > 10);
+      CHECK(kept < touching + touching / 4 + 4);
+      CHECK(all.triangles.size() > 2 * kept);
     }
-    CHECK(kept == some.triangles.size());
-    CHECK(touching > 10);
-    CHECK(kept < touching + touching / 4 + 4);
-    CHECK(all.triangles.size() > 2 * kept);
   }
 }
 

@@ -109,6 +109,16 @@ assert "colour is (8, 9)" in error(softfocus.refocus, d, d)
 assert "depth is int64" in error(softfocus.refocus, c, d.astype("i8"))
 assert "the result is int16" in error(softfocus.refocus, c, d, dtype="i2")
 assert "f_number" in error(softfocus.refocus, c, d, f_number=-1)
+read_only = np.ones((8, 9, 3), "f4")
+read_only.flags.writeable = False
+assert "cannot be written" in error(softfocus.refocus, c, d, out=read_only)
+assert "cannot be written" in error(softfocus.refocus, c, d, out=np.lib.stride_tricks.as_strided(
+    np.ones(3, "f4"), (8, 9, 3), (0, 0, 4)))
+assert "the result is list" in error(softfocus.refocus, c, d, out=[1])
+assert "one of the two" in error(softfocus.refocus, c, d, out=np.ones((8, 9, 3), "f4"), dtype="f4")
+assert "threads is -1" in error(softfocus.refocus, c, d, threads=-1)
+assert "zero" in error(softfocus.refocus, c, d, method="two-pass\0x")
+assert (softfocus.refocus(c.astype(">f4"), d.astype(">f4")) == softfocus.refocus(c, d)).all()
 assert len(softfocus.methods()) > 20 and all(softfocus.methods().values())
 assert "llvmpipe" in softfocus.profiles()
 )py",
@@ -144,6 +154,16 @@ edge = softfocus.Shader(text.replace("texelFetch(p, ivec2(gl_FragCoord.xy), 0)",
 edge.set("gain", [0, 1])
 edge.set_texture("p", picture, filter="nearest", wrap="clamp")
 assert (edge.run(1, 1)[0, 0] == picture[-1, -1]).all()
+import copy, os
+try: copy.copy(shader)
+except TypeError as said: assert "cannot be copied" in str(said)
+else: raise AssertionError("copied")
+child = os.fork()
+if child == 0:
+    try: shader.run(1, 1)
+    except RuntimeError: os._exit(0)
+    os._exit(1)
+assert os.waitpid(child, 0)[1] == 0
 assert error(softfocus.Shader, "void main() {\n  wrong;\n}", "mine.frag").startswith("mine.frag:2: ")
 )py",
                    {}) == "");
@@ -168,7 +188,9 @@ same = softfocus.compare(picture, sys.argv[1])
 assert same["passes"] and same["equal"]
 other = softfocus.compare(softfocus.render("figures", size="48x36"), picture, max_flip=0.5)
 assert other["passes"] and not other["equal"] and 0 < other["flip"] < 0.5
+assert (softfocus.render("figures", size=(48, 36), method="accumulation", samples=8) == picture).all()
 assert not softfocus.compare(picture * 2, picture)["passes"]
+assert "not for this call" in error(softfocus.render, "figures", output="x.npy")
 assert "did you mean 'figures'?" in error(softfocus.render, "figurs")
 assert "one size" in error(softfocus.compare, picture, picture[1:])
 )py",
@@ -220,19 +242,50 @@ TEST_CASE("pytest's fixture holds pictures against goldens, and takes new ones w
   CHECK(first.find("4 failed") != std::string::npos);
   CHECK(run("--softfocus-accept").starts_with("passes: "));
   CHECK(run("").starts_with("passes: "));
-  const std::string goldens = folder.path() + "/goldens/";
+  const std::string goldens = folder.path() + "/goldens/test_it/";
   CHECK(std::filesystem::exists(goldens + "test_marked-1.npy"));
   CHECK(!std::filesystem::exists(goldens + "test_plain.got.npy"));
   write_test("0.05");
   const std::string changed = run("");
   CHECK(changed.find("1 failed, 3 passed") != std::string::npos);
-  CHECK(changed.find("test_plain.npy: 576 of 576 values differ, by 0.05") != std::string::npos);
+  CHECK(changed.find("576 of 576 values differ, at most by 0.05") != std::string::npos);
   CHECK(std::filesystem::exists(goldens + "test_plain.got.npy"));
   CHECK(std::filesystem::exists(goldens + "test_plain.diff.png"));
   CHECK(run("--softfocus-accept").starts_with("passes: "));
   CHECK(!std::filesystem::exists(goldens + "test_plain.got.npy"));
   CHECK(!std::filesystem::exists(goldens + "test_plain.diff.png"));
   CHECK(run("").starts_with("passes: "));
+
+  // No two names are one file, whatever they are made of.
+  write_file(folder.file("test_names.py"), R"py(import numpy as np, pytest
+p = np.ones((4, 4, 3), "f4")
+class TestA:
+    def test_same(self, softfocus_compare): softfocus_compare(p)
+class TestB:
+    def test_same(self, softfocus_compare): softfocus_compare(p * 2)
+@pytest.mark.parametrize("k", ["1", "-1", "+1", "a b", "a+b", "..", ".", "", "/"])
+def test_words(softfocus_compare, k): softfocus_compare(p * (3 + len(k) + sum(map(ord, k))))
+def test_nan(softfocus_compare): softfocus_compare(p * np.nan)
+)py");
+  CHECK(run("test_names.py --softfocus-accept").find("12 passed") != std::string::npos);
+  CHECK(run("test_names.py").find("12 passed") != std::string::npos);
+  write_file(folder.file("test_wrong.py"), R"py(import numpy as np, pytest
+p = np.ones((4, 4, 3), "f4")
+def test_option(softfocus_compare): softfocus_compare(p, max_flipp=1)
+def test_type(softfocus_compare): softfocus_compare(p > 0)
+@pytest.mark.softfocus(0.5)
+def test_marker(softfocus_compare): softfocus_compare(p)
+def test_twice(softfocus_compare):
+    softfocus_compare(p)
+    softfocus_compare(p)
+)py");
+  const std::string wrong = run("test_wrong.py --softfocus-accept");
+  CHECK(wrong.find("4 failed") != std::string::npos);
+  CHECK(wrong.find("--max-flip'?") != std::string::npos);
+  CHECK(wrong.find("takes options by name") != std::string::npos);
+  CHECK(wrong.find("need a name each") != std::string::npos);
+  CHECK(!std::filesystem::exists(folder.path() + "/goldens/test_wrong/test_option.npy"));
+  CHECK(!std::filesystem::exists(folder.path() + "/goldens/test_wrong/test_type.npy"));
 #else
   skip("", "a build without the shared library");
 #endif

@@ -4,7 +4,7 @@ machine.
     import softfocus
     blurred = softfocus.refocus(colour, depth, focus_m=2.5, f_number=1.4)
     picture = softfocus.render("figures", size="640x480")
-    print(softfocus.compare(blurred, picture)["flip_mean"])
+    print(softfocus.compare(blurred, picture)["flip"])
 
 Pictures are NumPy arrays (height, width, channels), rows from the top: uint8 along the sRGB curve, or
 float16 or float32 of linear light. OpenCV's order is `bgr[..., ::-1]`, which copies nothing.

@@ -6,6 +6,7 @@ import ctypes
 import ctypes.util
 import functools
 import os
+import threading
 from typing import TYPE_CHECKING, Any
 
 import numpy
@@ -104,20 +105,48 @@ def library() -> ctypes.CDLL:
     return loaded
 
 
+def encoded(text: str) -> bytes:
+    """Text for C, where a zero would end it."""
+    if "\0" in text:
+        raise ValueError(f"{text!r} has a zero in it")
+    return text.encode()
+
+
 class Context:
-    """softfocus_context: threads, and the memory that methods work in."""
+    """softfocus_context: threads, and the memory that methods work in. One call at a time."""
 
     def __init__(self, threads: int = 0):
         self.handle = ctypes.c_void_p()
+        if not isinstance(threads, int) or not 0 <= threads <= 256:
+            raise ValueError(f"threads is {threads!r}; 1 to 256, or 0 for all, would do")
         if library().softfocus_open(ctypes.byref(self.handle), threads) != 0:
             raise MemoryError("softfocus_open")
+        self.process, self.lock = os.getpid(), threading.Lock()
 
     def __del__(self) -> None:
-        library().softfocus_close(self.handle)
+        if getattr(self, "process", None) == os.getpid():
+            library().softfocus_close(self.handle)
+
+    def __reduce__(self) -> Any:
+        raise TypeError("a softfocus context or shader cannot be copied; make another")
 
     def call(self, name: str, *arguments: Any) -> None:
-        if getattr(library(), "softfocus_" + name)(self.handle, *arguments) != 0:
-            raise ValueError(library().softfocus_message(self.handle).decode())
+        if self.process != os.getpid():
+            raise RuntimeError("a softfocus context or shader does not outlive fork(); make another")
+        with self.lock:
+            if getattr(library(), "softfocus_" + name)(self.handle, *arguments) != 0:
+                raise ValueError(library().softfocus_message(self.handle).decode())
+
+
+_kept = threading.local()
+
+
+def _context(threads: int) -> Context:
+    """The thread's own, kept from call to call: it has memory for pictures of a size."""
+    kept = getattr(_kept, "context", None)
+    if kept is None or _kept.threads != threads or kept.process != os.getpid():
+        _kept.context, _kept.threads = Context(threads), threads
+    return _kept.context
 
 
 def _listed(kind: str) -> dict[str, str]:
@@ -153,13 +182,25 @@ def _place(pixels: Any, colour: NDArray[Any], depth: NDArray[Any] | None) -> Any
 
 
 def _known(name: str, array: NDArray[Any], types: list[str]) -> NDArray[Any]:
-    """The array, from float64 rounded to float32."""
+    """The array in this machine's order of bytes, from float64 rounded to float32."""
     array = numpy.asarray(array)
-    if array.dtype == numpy.float64:
+    if array.dtype.newbyteorder("=") == numpy.float64:
         array = array.astype(numpy.float32)
+    elif not array.dtype.isnative:
+        array = array.astype(array.dtype.newbyteorder("="))
     if str(array.dtype) not in types:
         raise ValueError(f"{name} is {array.dtype}; {', '.join(types)} or float64 would do")
     return array
+
+
+def _check_result(out: Any, shape: tuple[int, ...]) -> None:
+    fits = isinstance(out, numpy.ndarray) and str(out.dtype) in TYPES and out.ndim == 3
+    if not fits or out.shape[:2] != shape or out.shape[2] < 3:
+        what = f"{out.dtype} {out.shape}" if isinstance(out, numpy.ndarray) else type(out).__name__
+        raise ValueError(f"the result is {what}; {', '.join(TYPES)} of (h, w, 3) would do")
+    overlaps = any(step == 0 and size > 1 for step, size in zip(out.strides, out.shape))
+    if not out.flags.writeable or overlaps:
+        raise ValueError("the result cannot be written to; an array of its own would do")
 
 
 def refocus(
@@ -209,15 +250,16 @@ def refocus(
         )
     if out is None:
         out = numpy.empty((*depth.shape, 3), colour.dtype if dtype is None else dtype)
-    if str(out.dtype) not in TYPES or out.ndim != 3 or out.shape[:2] != depth.shape or out.shape[2] < 3:
-        raise ValueError(f"the result is {out.dtype} {out.shape}; {', '.join(TYPES)} of (h, w, 3) would do")
-    context = Context(threads)
+    elif dtype is not None:
+        raise ValueError("dtype is that of out; one of the two would do")
+    _check_result(out, depth.shape)
+    context = _context(threads)
     settings = Settings()
     library().softfocus_init_settings(ctypes.byref(settings), ctypes.sizeof(settings))
     chosen = locals()
     for name in [field for field, _ in Settings._fields_ if field in chosen]:
         value = chosen[name]
-        setattr(settings, name, value.encode() if isinstance(value, str) else value)
+        setattr(settings, name, encoded(value) if isinstance(value, str) else value)
     picture = _place(Picture(), colour, depth)
     picture.height, picture.width = depth.shape
     target = _place(Target(), out, None)

@@ -26,24 +26,29 @@ def program() -> str:
 
 
 def _words(options: dict[str, Any]) -> list[str]:
-    """f_number=2 is --f-number 2, True a flag, and a list an option of several words."""
+    """f_number=2 is --f-number 2, True a flag, size=(640, 480) 640x480, and another list an option of
+    several words."""
     words = []
     for name, value in options.items():
-        if value is None or value is False:
+        if name in ("output", "json", "help", "quiet"):
+            raise ValueError(f"{name} is not for this call; `python -m softfocus` has it")
+        if value is None or (isinstance(value, (bool, numpy.bool_)) and not value):
             continue
         words.append("--" + name.rstrip("_").replace("_", "-"))
-        if value is not True:
-            values = value if isinstance(value, (list, tuple)) else [value]
-            words += [str(one) for one in values]
+        if name == "size" and isinstance(value, (list, tuple)):
+            value = "x".join(str(one) for one in value)
+        if not isinstance(value, (bool, numpy.bool_)):
+            words += [str(one) for one in (value if isinstance(value, (list, tuple)) else [value])]
     return words
 
 
-def _run(words: list[str], fails_from: int = 1) -> str:
+def _run(words: list[str], *, passes: tuple[int, ...] = (0,)) -> subprocess.CompletedProcess[str]:
     run = subprocess.run([program(), *words], capture_output=True, text=True, check=False)
-    if run.returncode >= fails_from:
+    if run.returncode not in passes:
         lines = [line for line in run.stderr.splitlines() if ": warning: " not in line]
-        raise ValueError("\n".join(lines).removeprefix("softfocus: ") or f"status {run.returncode}")
-    return run.stdout
+        said = "\n".join(lines).removeprefix("softfocus: ")
+        raise ValueError(said or f"softfocus ended with status {run.returncode}")
+    return run
 
 
 def render(scene: str | os.PathLike[str], **options: Any) -> NDArray[numpy.float16]:
@@ -64,7 +69,7 @@ def compare(
 ) -> dict[str, Any]:
     """`softfocus compare --json`: how far `a` is from `b`, which it should be. Arrays or files.
 
-    The result has "equal", "flip_mean", "psnr_db", "ssim", ... and "passes": whether the tolerance
+    The result has "equal", "flip", "psnr_db", "ssim", ... and "passes": whether the tolerance
     among the options, such as max_flip=.01 or max_pixels="1%", is kept; without one, whether all bits
     are equal. Raises ValueError.
     """
@@ -73,12 +78,10 @@ def compare(
         for name, picture in (("a", a), ("b", b)):
             if isinstance(picture, numpy.ndarray):
                 files.append(os.path.join(folder, name + ".npy"))
-                wide = picture.dtype == numpy.float64
-                numpy.save(files[-1], picture.astype(numpy.float32) if wide else picture)
+                native = picture.dtype.newbyteorder("=")
+                kind = numpy.float32 if native == numpy.float64 else native
+                numpy.save(files[-1], picture.astype(kind, copy=False), allow_pickle=False)
             else:
                 files.append(os.fspath(picture))
-        words = ["compare", *files, "--json", *_words(options)]
-        run = subprocess.run([program(), *words], capture_output=True, text=True, check=False)
-        if run.returncode > 1:
-            raise ValueError(run.stderr.strip().removeprefix("softfocus: "))
+        run = _run(["compare", *files, "--json", *_words(options)], passes=(0, 1))
         return {**json.loads(run.stdout), "passes": run.returncode == 0}

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from ._calls import Context, library
+from ._calls import Context, encoded, library
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -99,24 +99,30 @@ class Shader:
 
     def __init__(self, text: str, name: str = "shader", *, convention: str | None = None, threads: int = 0):
         """`name` is for errors; without a convention it is recognised by the text."""
-        self._context, self._handle = Context(threads), ctypes.c_void_p()
+        self._handle = ctypes.c_void_p()
+        self._context = Context(threads)
         source = _Source(
             ctypes.sizeof(_Source),
             _FRAGMENT,
-            text.encode(),
-            name=name.encode(),
-            convention=convention.encode() if convention else None,
+            encoded(text),
+            name=encoded(name),
+            convention=encoded(convention) if convention else None,
         )
         self._context.call("compile_shader", ctypes.byref(source), ctypes.byref(self._handle))
 
     def __del__(self) -> None:
-        library().softfocus_free_shader(self._handle)
+        if self._handle:
+            library().softfocus_free_shader(self._handle)
+
+    def __reduce__(self) -> Any:
+        return self._context.__reduce__()
 
     def uniforms(self) -> list[str]:
         """The names of all uniforms and textures."""
         names: list[str] = []
-        while name := library().softfocus_uniform_name(self._handle, ctypes.c_size_t(len(names))):
-            names.append(name.decode())
+        with self._context.lock:
+            while name := library().softfocus_uniform_name(self._handle, ctypes.c_size_t(len(names))):
+                names.append(name.decode())
         return names
 
     def set(self, name: str, numbers: ArrayLike) -> None:
@@ -125,7 +131,7 @@ class Shader:
         self._context.call(
             "set_uniform",
             self._handle,
-            name.encode(),
+            encoded(name),
             values.ctypes.data_as(ctypes.POINTER(ctypes.c_double)),
             ctypes.c_size_t(values.size),
         )
@@ -149,7 +155,7 @@ class Shader:
         self._context.call(
             "set_texture",
             self._handle,
-            name.encode(),
+            encoded(name),
             ctypes.byref(_texels_of(pixels)),
             ctypes.byref(sampler),
         )
@@ -159,6 +165,6 @@ class Shader:
         result = numpy.zeros((height, width, 4), numpy.float32)
         target = _texels_of(result)
         targets = (ctypes.c_void_p * 1)(ctypes.addressof(target))
-        where = _Pass(ctypes.sizeof(_Pass), ctypes.addressof(targets), 1, profile.encode())
+        where = _Pass(ctypes.sizeof(_Pass), ctypes.addressof(targets), 1, encoded(profile))
         self._context.call("run_shader", self._handle, ctypes.byref(where))
         return result
