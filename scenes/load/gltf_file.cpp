@@ -40,6 +40,27 @@ std::string numbered(const char* what, std::size_t number) {
   return std::string{what} + " " + std::to_string(number);
 }
 
+namespace {
+
+int hex_digit(char letter) {
+  if (letter >= '0' && letter <= '9') return letter - '0';
+  if (letter >= 'a' && letter <= 'f') return letter - 'a' + 10;
+  return letter >= 'A' && letter <= 'F' ? letter - 'A' + 10 : -1;
+}
+
+}  // namespace
+
+std::string without_percents(std::string_view uri) {
+  std::string text;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    const int high = uri[i] == '%' && i + 2 < uri.size() ? hex_digit(uri[i + 1]) : -1;
+    const int low = high >= 0 ? hex_digit(uri[i + 2]) : -1;
+    if (low >= 0) i += 2;
+    text.push_back(low >= 0 ? static_cast<char>(16 * high + low) : uri[i]);
+  }
+  return text;
+}
+
 std::string shortened(std::string text) {
   constexpr std::size_t kMost = 200;
   if (text.size() > kMost) text.replace(kMost, text.npos, "...");
@@ -62,12 +83,17 @@ bool is_beside(const std::string& path, void* user) {
   return path.starts_with(folder) && std::filesystem::is_regular_file(path, unknown);
 }
 
+// A file may be longer than the buffer: exporters pad it.
 bool read_buffer_file(std::vector<unsigned char>* bytes, std::string* error,
                       const std::string& path, void* user) {
+  GltfFile& reader = *static_cast<GltfFile*>(user);
   try {
     const std::string read = read_file_bytes(path, kMaxGltfBytes);
-    static_cast<GltfFile*>(user)->model.files.emplace_back(path);
-    bytes->assign(read.begin(), read.end());
+    reader.model.files.emplace_back(path);
+    const auto length = reader.length_of_file.find(std::filesystem::path{path}.filename().string());
+    const std::size_t most = length != reader.length_of_file.end() ? length->second : read.size();
+    bytes->assign(read.begin(),
+                  read.begin() + static_cast<std::ptrdiff_t>(std::min(most, read.size())));
     return true;
   } catch (const SceneError& failed) {
     *error += failed.what();
@@ -125,11 +151,26 @@ std::string_view json_of(std::string_view bytes, bool is_binary) {
   return bytes.substr(kBeforeJson, length);
 }
 
+// The lengths of buffers, by the last part of their files' names.
+void find_lengths(GltfFile& reader, std::string_view text) {
+  const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+  if (!json.is_object() || !json.contains("buffers")) return;
+  for (const nlohmann::json& buffer : json["buffers"]) {
+    if (!buffer.is_object() || !buffer.contains("uri") || !buffer.contains("byteLength")) continue;
+    if (!buffer["uri"].is_string() || !buffer["byteLength"].is_number_unsigned()) continue;
+    const std::string uri = buffer["uri"].get<std::string>();
+    if (uri.starts_with("data:")) continue;
+    const std::string name = std::filesystem::path{without_percents(uri)}.filename().string();
+    std::size_t& length = reader.length_of_file[name];
+    length = std::max(length, buffer["byteLength"].get<std::size_t>());
+  }
+}
+
 // What a file may require: what is understood, and what changes looks alone.
 bool is_harmless(const std::string& extension) {
-  constexpr std::array<std::string_view, 5> kBegin = {"KHR_materials_", "KHR_texture_",
-                                                      "EXT_texture_", "KHR_lights_punctual",
-                                                      "KHR_mesh_quantization"};
+  constexpr std::array<std::string_view, 6> kBegin = {
+      "KHR_materials_", "KHR_texture_",        "KHR_technique",
+      "EXT_texture_",   "KHR_lights_punctual", "KHR_mesh_quantization"};
   return std::any_of(kBegin.begin(), kBegin.end(),
                      [&](std::string_view begin) { return extension.starts_with(begin); });
 }
@@ -157,6 +198,7 @@ void parse_gltf(GltfFile& reader) {
   const std::string bytes = read_file_bytes(reader.path, kMaxGltfBytes);
   const bool is_binary = bytes.starts_with("glTF");
   check_nesting(reader, json_of(bytes, is_binary));
+  find_lengths(reader, json_of(bytes, is_binary));
   reader.model.files.push_back(reader.path);
   tinygltf::FsCallbacks callbacks{};
   callbacks.FileExists = is_beside;

@@ -11,6 +11,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <vector>
 
@@ -34,6 +35,7 @@ struct GltfFile {
   std::map<std::tuple<int, double, double>, std::uint32_t> opacity_of_image{};
   /// Roughness and metallic, means of a picture.
   std::map<int, std::array<double, 2>> means_of_image{};
+  std::map<std::string, std::size_t> length_of_file{};
   std::set<std::string> told{};
   std::size_t numbers_left = std::size_t{1} << 30;  ///< that may still be read
 };
@@ -91,6 +93,9 @@ double number_in(const tinygltf::Value& object, const char* key, double fallback
 double number_in(const tinygltf::Value& object, const char* key, std::size_t i, double fallback);
 /// A whole number from 0 on, or -1.
 int index_in(const tinygltf::Value& object, const char* key);
+
+/// A URI's text: %20 is a blank.
+std::string without_percents(std::string_view uri);
 
 /// The beginning of what may be very long.
 std::string shortened(std::string text);

@@ -20,23 +20,6 @@ bool is_there(const std::filesystem::path& file) {
   return std::filesystem::is_regular_file(file, unknown);
 }
 
-int hex_digit(char letter) {
-  if (letter >= '0' && letter <= '9') return letter - '0';
-  if (letter >= 'a' && letter <= 'f') return letter - 'a' + 10;
-  return letter >= 'A' && letter <= 'F' ? letter - 'A' + 10 : -1;
-}
-
-std::string without_percents(std::string_view uri) {
-  std::string text;
-  for (std::size_t i = 0; i < uri.size(); ++i) {
-    const int high = uri[i] == '%' && i + 2 < uri.size() ? hex_digit(uri[i + 1]) : -1;
-    const int low = high >= 0 ? hex_digit(uri[i + 2]) : -1;
-    if (low >= 0) i += 2;
-    text.push_back(low >= 0 ? static_cast<char>(16 * high + low) : uri[i]);
-  }
-  return text;
-}
-
 constexpr const char* kNoPicture = " is neither PNG nor JPEG, and left out";
 
 std::optional<Texture> read_picture(GltfFile& reader, int number) {

@@ -476,7 +476,7 @@ TEST_CASE("a picture beside the model is found by its name with percents, and li
   Gltf gltf = triangle("", ",\"material\":0");
   gltf.more = material("\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}") +
               ",\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"a%20b.png\"}]";
-  write_file(directory.file("buffer.bin"), gltf.bytes);
+  write_file(directory.file("buffer.bin"), gltf.bytes + "padded");
   write_file(directory.file("model.gltf"), gltf.text("\"uri\":\"buffer.bin\","));
   const Model model = load_gltf_model(directory.file("model.gltf"));
   CHECK(model.textures.size() == 1);

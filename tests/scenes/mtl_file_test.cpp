@@ -42,9 +42,8 @@ TEST_CASE("Ka, Kd, Ks and Ns are read, Ns as a whole number") {
 
 TEST_CASE("Ns is kept from 1 to 1024") {
   for (const auto& [written, kept] : {std::pair{"-5", 1}, {"0", 1}, {"1e9", 1024}, {"nan", 1}}) {
-    const Model model =
-        load_with_library(triangle_and("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
-                          std::string("newmtl a\nKd 1 1 1\nNs ") + written + "\n");
+    const Model model = load_with_library(triangle_and("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
+                                          std::string("newmtl a\nKd 1 1 1\nNs ") + written + "\n");
     CHECK(model.materials[0].shininess == kept);
   }
 }
@@ -52,7 +51,7 @@ TEST_CASE("Ns is kept from 1 to 1024") {
 TEST_CASE("a Ka that is black or white means nothing") {
   for (const char* ka : {"", "Ka 0 0 0\n", "Ka 1 1 1\n"}) {
     const Model model = load_with_library(triangle_and("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
-                                             std::string("newmtl a\nKd 0.4 0.5 0.6\n") + ka);
+                                          std::string("newmtl a\nKd 0.4 0.5 0.6\n") + ka);
     CHECK(model.materials[0].ambient == glm::vec3{0.4f, 0.5f, 0.6f});
   }
 }
@@ -68,7 +67,7 @@ TEST_CASE("a texture is loaded once, however many materials have it") {
 
 TEST_CASE("a texture is found by its last part, and a black Kd does not hide it") {
   const Model model = load_with_library(triangle_and("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
-                                           "newmtl a\nKd 0 0 0\nmap_Kd C:\\Users\\me\\wood.png\n");
+                                        "newmtl a\nKd 0 0 0\nmap_Kd C:\\Users\\me\\wood.png\n");
   CHECK(model.textures.size() == 1);
   CHECK(model.materials[0].diffuse == glm::vec3{1.0f});
   CHECK(model.warnings.empty());
@@ -76,7 +75,7 @@ TEST_CASE("a texture is found by its last part, and a black Kd does not hide it"
 
 TEST_CASE("a clamped texture is clamped") {
   const Model model = load_with_library(triangle_and("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
-                                           "newmtl a\nKd 1 1 1\nmap_Kd -clamp on wood.png\n");
+                                        "newmtl a\nKd 1 1 1\nmap_Kd -clamp on wood.png\n");
   CHECK(model.materials[0].sampler.wrap_u == Wrap::clamp_to_edge);
 }
 
@@ -134,7 +133,7 @@ TEST_CASE("colours are one number or three; what is none is told") {
                           {"Kd red", glm::vec3{0.0f}, true}}) {
     CAPTURE(one.written);
     const Model model = load_with_library(triangle_and("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
-                                             "newmtl a\n" + one.written + "\n");
+                                          "newmtl a\n" + one.written + "\n");
     CHECK(model.materials[0].diffuse == one.diffuse);
     CHECK(model.warnings.empty() != one.warns);
   }
@@ -145,8 +144,7 @@ TEST_CASE("Ns 0 is no highlight") {
        {std::pair{"Ns 0\n", false}, {"Ns nan\n", true}, {"Ns 0.5\n", true}, {"", true}}) {
     const std::string text = std::string("newmtl a\nKs 1 1 1\n") + written;
     CAPTURE(text);
-    const Model model =
-        load_with_library(triangle_and("mtllib a.mtl\nusemtl a\nf 1 2 3\n"), text);
+    const Model model = load_with_library(triangle_and("mtllib a.mtl\nusemtl a\nf 1 2 3\n"), text);
     CHECK((model.materials[0].specular != glm::vec3{0.0f}) == shines);
   }
 }
@@ -179,13 +177,13 @@ TEST_CASE("options of maps place the texture, or are told once") {
 TEST_CASE("a material whose name has a zero in it is no failure") {
   const std::string name("a\0b", 3);
   const Model model = load_with_library(triangle_and("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
-                                           "newmtl " + name + "\nKd 1 0 0\nmap_Kd wood.png\n");
+                                        "newmtl " + name + "\nKd 1 0 0\nmap_Kd wood.png\n");
   CHECK(model.materials[0].diffuse == glm::vec3{1.0f, 0.0f, 0.0f});
 }
 
 TEST_CASE("a library with a byte order mark is read") {
   const Model model = load_with_library(triangle_and("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
-                                           "\xEF\xBB\xBFnewmtl a\nKd 1 0 0\n");
+                                        "\xEF\xBB\xBFnewmtl a\nKd 1 0 0\n");
   CHECK(model.materials[0].diffuse == glm::vec3{1.0f, 0.0f, 0.0f});
 }
 
@@ -217,7 +215,7 @@ TEST_CASE("a map_d of 0 and 1 alone makes a cut-out") {
 
 TEST_CASE("a map_d that is missing is a warning, and the surface stays as it is") {
   const Model model = load_with_library(triangle_and("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
-                                           "newmtl a\nKd 1 0 0\nd 0.5\nmap_d leaf.png\n");
+                                        "newmtl a\nKd 1 0 0\nd 0.5\nmap_d leaf.png\n");
   REQUIRE(model.warnings.size() == 1);
   CHECK(contains(model.warnings[0], "a.mtl: material a: texture leaf.png is missing"));
   CHECK(model.materials[0].diffuse == glm::vec3{1.0f, 0.0f, 0.0f});
@@ -232,8 +230,8 @@ TEST_CASE("a missing library, material or texture is a warning, and grey stands 
   CHECK(contains(without_library.warnings[1], "material a is not defined"));
   CHECK(without_library.materials[without_library.parts[0].material].diffuse == glm::vec3{0.5f});
 
-  const Model without_texture = load_with_library(
-      triangle_and("mtllib a.mtl\nusemtl a\nf 1 2 3\n"), "newmtl a\nKd 1 0 0\nmap_Kd stone.png\n");
+  const Model without_texture = load_with_library(triangle_and("mtllib a.mtl\nusemtl a\nf 1 2 3\n"),
+                                                  "newmtl a\nKd 1 0 0\nmap_Kd stone.png\n");
   REQUIRE(without_texture.warnings.size() == 1);
   CHECK(contains(without_texture.warnings[0], "a.mtl: material a: texture stone.png is missing"));
   CHECK_FALSE(without_texture.materials[0].texture);

@@ -495,10 +495,9 @@ TEST_CASE("a model without a library is neutral grey, with no complaint") {
 }
 
 TEST_CASE("a model is split by material, in the order of first use") {
-  const Model model =
-      load(triangle_with("v 0 0 1\nmtllib a.mtl\nusemtl blue\nf 1 2 3\nusemtl red\n"
-                         "f 2 3 4\nusemtl blue\nf 3 1 4\n"),
-           "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n");
+  const Model model = load(triangle_with("v 0 0 1\nmtllib a.mtl\nusemtl blue\nf 1 2 3\nusemtl red\n"
+                                         "f 2 3 4\nusemtl blue\nf 3 1 4\n"),
+                           "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n");
   REQUIRE(model.parts.size() == 2);
   CHECK(model.materials[model.parts[0].material].name == "blue");
   CHECK(model.materials[model.parts[0].material].diffuse == glm::vec3{0.0f, 0.0f, 1.0f});

@@ -270,7 +270,7 @@ TEST_CASE("a part of a floor gets the shadows that touch it, and few others") {
   // Eight corners around the middle, none of which is one of the floor's; four that are there
   // twice, in either order; four, and the middles between them.
   const auto eight = [&](std::size_t i) { return corner(static_cast<double>(i)); };
-  const auto twice = [&](std::size_t i) { return corner(static_cast<double>(i / 2 * 2)); };
+  const auto twice = [&](std::size_t i) { return corner(static_cast<double>(i - i % 2)); };
   const auto almost = [&](std::size_t i) { return twice(i) * (i % 2 == 0 ? 1.0 : 1.0 + 0x1p-52); };
   const auto between = [&](std::size_t i) { return (twice(i) + twice((i + 1) % 8)) * 0.5; };
   const std::vector<std::function<glm::dvec3(std::size_t)>> outlines{eight, twice, almost, between};
