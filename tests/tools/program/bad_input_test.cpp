@@ -263,9 +263,9 @@ TEST_CASE("bad input: a model or a texture that is a pipe, and a model of anothe
   REQUIRE(mkfifo(directory.file("m.obj").c_str(), 0600) == 0);
   check_refused(directory, {"render", directory.file("m.obj"), "-o", directory.file("out.png")}, 1,
                 {"m.obj", "is a pipe or a device"});
-  write_file(directory.file("m.glb"), "glTF");
-  check_refused(directory, {"render", directory.file("m.glb"), "-o", directory.file("out.png")}, 1,
-                {"m.glb", ".obj files"});
+  write_file(directory.file("m.fbx"), "glTF");
+  check_refused(directory, {"render", directory.file("m.fbx"), "-o", directory.file("out.png")}, 1,
+                {"m.fbx", ".obj files"});
 }
 
 TEST_CASE("bad input: two outputs that are one file through a link that leads nowhere yet") {
