@@ -7,7 +7,7 @@ set(order
   dof/fixed dof dof/two_pass dof/one_pass dof/disc_layers dof/scatter
   dof/half_resolution dof/ring_bucket dof/circular dof/polygon dof/mipmap dof/object_layers dof/ray_distribution
   dof/methods dof/fixed_pictures dof/pipelines dof/method.cpp dof/measure dof/auto dof/c
-  scenes/scene.h scenes/parameters.h scenes/make scenes/random scenes/files scenes/surfaces scenes/load scenes/embree scenes/lens_views/lens_points.h scenes/lens_views/lens_points.cpp scenes/shadows scenes/shadows/maps scenes/shadows/volumes
+  scenes/scene.h scenes/parameters.h scenes/make scenes/random scenes/files scenes/surfaces scenes/models scenes/load scenes/embree scenes/lens_views/lens_points.h scenes/lens_views/lens_points.cpp scenes/shadows scenes/shadows/maps scenes/shadows/volumes
   scenes/draw scenes/relief scenes/relief/warp scenes/relief/impostors scenes/lens_views scenes/traced_relief
   scenes/temporal scenes/filtered_views scenes/warped_views
   scenes/surface_splatting scenes/lens_views/lens_view_method.cpp scenes/auto scenes/frame scenes/scenes.h

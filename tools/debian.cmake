@@ -44,6 +44,12 @@ function(debian_package component name section synopsis)
           DESTINATION ${folder} COMPONENT ${component})
 endfunction()
 
+# Where Debian's Python looks, of no other prefix.
+if(softfocus_shared AND CMAKE_INSTALL_PREFIX STREQUAL "/usr")
+  install(DIRECTORY tools/python/softfocus DESTINATION lib/python3/dist-packages
+          COMPONENT libsoftfocus-dev PATTERN __pycache__ EXCLUDE)
+endif()
+
 debian_package(softfocus softfocus graphics "depth of field for pictures and scenes"
   "Gives a picture with depth the depth of field of a lens, by any of the"
   "published methods, and draws scenes through the same lens by a software GPU."

@@ -240,27 +240,28 @@ std::vector<Light> lights_left(std::span<const Light> lights, const SceneShadows
   return left;
 }
 
-// Finds the triangles that pixels with the mask show in any layer.
+// Finds the triangles that pixels with the mask show, and those that other layers show there: a
+// nearer layer decides what is seen in the next.
 void list_triangles(SceneShadows& shadows, const Scene& scene, std::size_t mask, const Tiles& tiles,
                     std::span<const int> of_tiles, int width, int height) {
   std::vector<std::uint8_t> is_listed(shadows.facets.facets.size());
-  for (std::size_t with_mask = 0; with_mask < shadows.masks.size(); ++with_mask) {
+  const auto list_row = [&](std::size_t first, std::span<const std::uint8_t> row) {
+    for (std::size_t x = 0; x < row.size(); ++x) {
+      if (row[x] != mask) continue;
+      for (const std::vector<SeenFacet>& layer : shadows.seen) {
+        const SeenFacet seen = layer[first + x];
+        if (shows_facet(seen)) is_listed[facet_of(seen)] = 1;
+      }
+    }
+  };
+  for (const std::vector<std::uint8_t>& masks : shadows.masks) {
     for (const int tile : of_tiles) {
       const Rectangle area = area_of(tiles, tile, width, height);
-      for_each_tile_row(area, width, shadows.masks[with_mask],
-                        [&](int y, std::span<const std::uint8_t> row) {
-                          const std::size_t first =
-                              static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                              static_cast<std::size_t>(area.x_begin);
-                          for (std::size_t x = 0; x < row.size(); ++x) {
-                            if (row[x] != mask) continue;
-                            // What lies before a layer decides what is seen in it.
-                            for (const std::vector<SeenFacet>& layer : shadows.seen) {
-                              const SeenFacet seen = layer[first + x];
-                              if (shows_facet(seen)) is_listed[facet_of(seen)] = 1;
-                            }
-                          }
-                        });
+      for_each_tile_row(area, width, masks, [&](int y, std::span<const std::uint8_t> row) {
+        list_row(static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                     static_cast<std::size_t>(area.x_begin),
+                 row);
+      });
     }
   }
   shadows.indices_of_objects.resize(scene.objects.size());

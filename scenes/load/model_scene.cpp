@@ -2,17 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <iomanip>
 #include <limits>
 #include <sstream>
 
 #include "raster/numbers/exact_math.h"
 #include "raster/numbers/vector_math.h"
-#include "scenes/files/file_bytes.h"
-#include "scenes/files/scene_error.h"
-#include "scenes/load/gltf_model.h"
-#include "scenes/load/obj_model.h"
 
 namespace softfocus {
 namespace {
@@ -156,16 +151,6 @@ void fit_lens(Scene& scene) {
 
 }  // namespace
 
-bool is_model_name(std::string_view name) {
-  return has_extension(name, ".gltf") || has_extension(name, ".glb") || has_extension(name, ".obj");
-}
-
-Model load_model(const std::filesystem::path& file, ThreadPool* pool) {
-  const std::string name = file.string();
-  const bool is_gltf = has_extension(name, ".gltf") || has_extension(name, ".glb");
-  return is_gltf ? load_gltf_model(file) : load_obj_model(file, pool);
-}
-
 void add_model(Scene& scene, Model model, const Object& placement,
                std::optional<std::uint32_t> material) {
   const auto first_material = static_cast<std::uint32_t>(scene.materials.size());
@@ -191,26 +176,6 @@ void add_model(Scene& scene, Model model, const Object& placement,
   }
   scene.warnings.insert(scene.warnings.end(), model.warnings.begin(), model.warnings.end());
   scene.files.insert(scene.files.end(), model.files.begin(), model.files.end());
-}
-
-glm::dvec3 far_middle(glm::dvec3 low, glm::dvec3 high) {
-  constexpr double kFar = 64.0;  // halves of the size
-  const glm::dvec3 half = (high - low) / 2.0;
-  const glm::dvec3 middle = (low + high) / 2.0;
-  const double size = std::max({half.x, half.y, half.z});
-  const double away = std::max({std::fabs(middle.x), std::fabs(middle.y), std::fabs(middle.z)});
-  if (!(away > kFar * size && away > kFar)) return glm::dvec3{0.0};
-  return {std::round(middle.x), std::round(middle.y), std::round(middle.z)};
-}
-
-std::string far_warning(const std::filesystem::path& file, glm::dvec3 subtracted) {
-  std::string text = "(";
-  for (int axis = 0; axis < 3; ++axis) {
-    text.append(axis == 0 ? "" : ", ")
-        .append(std::to_string(static_cast<std::int64_t>(subtracted[axis])));
-  }
-  return printable(file.string()) + ": is far from the origin for its size; " + text +
-         ") is subtracted from its positions";
 }
 
 Scene make_model_scene(Model model, const std::string& name) {

@@ -2,22 +2,13 @@
 // A model in a scene, and a model that is given as the scene itself.
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
-#include <string_view>
 
-#include "raster/threads/parallel.h"
-#include "scenes/load/model.h"
+#include "scenes/models/model.h"
 #include "scenes/scene.h"
 
 namespace softfocus {
-
-/// Whether a name is a model's file: ".gltf", ".glb", ".obj".
-bool is_model_name(std::string_view name);
-
-/// load_gltf_model() or load_obj_model(), by the end of the name.
-Model load_model(const std::filesystem::path& file, ThreadPool* pool);
 
 /// Puts each part of the model where `placement` says, with its own materials or all
 /// of `material`. The model's warnings and files

@@ -120,7 +120,7 @@ std::size_t cell_count(const LightGrid& grid) {
          static_cast<std::size_t>(grid.cells);
 }
 
-// A polygon in front of which half of the cells lie looks at all casters.
+// A polygon that touches more than half of the cells looks at all casters.
 bool looks_at_all(const LightGrid& grid, std::span<const glm::dvec3> polygon) {
   std::size_t cells = 0;
   for_each_range(grid, polygon, [&](int, const CellRange& range) {

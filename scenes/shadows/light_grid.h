@@ -50,8 +50,8 @@ struct CasterSearch {
   std::uint32_t search = 0;
 };
 
-/// The same, for polygons that touch many cells; of half of the cells, all casters. Valid until the
-/// next search.
+/// The same, for polygons that touch many cells. One that touches more than half of them gets all
+/// casters. Valid until the next search.
 std::span<const std::uint32_t> find_casters(const LightGrid& grid,
                                             std::span<const glm::dvec3> polygon,
                                             CasterSearch& search);

@@ -1,7 +1,7 @@
 // Any bytes as a material library: materials, or a SceneError.
 
 #include "scenes/files/scene_error.h"
-#include "scenes/load/mtl_file.h"
+#include "scenes/models/mtl_file.h"
 #include "tests/fuzz/fuzz_input.h"
 
 int softfocus::fuzz_mtl(const std::uint8_t* data, std::size_t size) {

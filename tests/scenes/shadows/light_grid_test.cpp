@@ -90,7 +90,7 @@ TEST_CASE("a search of few casters and one of most name what sorting all cells n
           {{-reach, -0.5, reach}, {reach, -0.4, reach}, {reach, -0.6, -reach}}};
       std::vector<std::uint32_t> found;
       find_casters(grid, polygon, found);
-      // What lies before half of the cells looks at all.
+      // A polygon that touches more than half of the cells gets all.
       const std::span<const std::uint32_t> by_search = find_casters(grid, polygon, search);
       CHECK((same(by_search, found) || (reach > 0.5 && same(by_search, grid.all))));
       most = std::max(most, found.size());

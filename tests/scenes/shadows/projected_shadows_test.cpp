@@ -267,8 +267,8 @@ TEST_CASE("a part of a floor gets the shadows that touch it, and few others") {
     }
     return false;
   };
-  // Eight corners around the middle, none of which is one of the floor's; four that are there
-  // twice, in either order; four, and the middles between them.
+  // Outlines around the floor's middle: an octagon; a square whose corners are there twice, exactly
+  // or but for rounding; a square with a corner in the middle of each edge.
   const auto eight = [&](std::size_t i) { return corner(static_cast<double>(i)); };
   const auto twice = [&](std::size_t i) { return corner(static_cast<double>(i - i % 2)); };
   const auto almost = [&](std::size_t i) { return twice(i) * (i % 2 == 0 ? 1.0 : 1.0 + 0x1p-52); };

@@ -18,71 +18,43 @@ HALF, FLOAT, SRGB8 = 1, 2, 4
 TYPES = {"float16": HALF, "float32": FLOAT, "uint8": SRGB8}
 
 
-class Picture(ctypes.Structure):
-    """softfocus_picture."""
-
-    _fields_ = [
-        ("struct_size", ctypes.c_size_t),
-        ("width", ctypes.c_int32),
-        ("height", ctypes.c_int32),
-        ("red", ctypes.c_void_p),
-        ("green", ctypes.c_void_p),
-        ("blue", ctypes.c_void_p),
-        ("pixel_bytes", ctypes.c_ssize_t),
-        ("row_bytes", ctypes.c_ssize_t),
-        ("depth", ctypes.c_void_p),
-        ("depth_pixel_bytes", ctypes.c_ssize_t),
-        ("depth_row_bytes", ctypes.c_ssize_t),
-        ("colour_type", ctypes.c_int32),
-        ("depth_type", ctypes.c_int32),
-        ("objects", ctypes.c_void_p),
-        ("radii_px", ctypes.c_void_p),
-        ("behind", ctypes.c_void_p),
-        ("transparent", ctypes.c_void_p),
-        ("opacity", ctypes.c_void_p),
-        ("behind_count", ctypes.c_int32),
-        ("transparent_count", ctypes.c_int32),
-    ]
+_TYPES = {
+    "size": ctypes.c_size_t,
+    "step": ctypes.c_ssize_t,
+    "int": ctypes.c_int32,
+    "long": ctypes.c_uint64,
+    "double": ctypes.c_double,
+    "text": ctypes.c_char_p,
+    "pointer": ctypes.c_void_p,
+}
 
 
-class Target(ctypes.Structure):
-    """softfocus_target."""
-
-    _fields_ = [
-        ("struct_size", ctypes.c_size_t),
-        ("red", ctypes.c_void_p),
-        ("green", ctypes.c_void_p),
-        ("blue", ctypes.c_void_p),
-        ("pixel_bytes", ctypes.c_ssize_t),
-        ("row_bytes", ctypes.c_ssize_t),
-        ("depth", ctypes.c_void_p),
-        ("depth_pixel_bytes", ctypes.c_ssize_t),
-        ("depth_row_bytes", ctypes.c_ssize_t),
-        ("colour_type", ctypes.c_int32),
-        ("depth_type", ctypes.c_int32),
-    ]
+def struct(name: str, *fields: str) -> type[ctypes.Structure]:
+    """A struct of softfocus.h, of lines "TYPE FIELD...". The first field is its size."""
+    named = [("struct_size", ctypes.c_size_t)]
+    for line in fields:
+        kind, *words = line.split()
+        named += [(word, _TYPES[kind]) for word in words]
+    return type(name, (ctypes.Structure,), {"_fields_": named})
 
 
-class Settings(ctypes.Structure):
-    """softfocus_settings."""
-
-    _fields_ = [
-        ("struct_size", ctypes.c_size_t),
-        ("method", ctypes.c_char_p),
-        ("profile", ctypes.c_char_p),
-        ("focal_length_mm", ctypes.c_double),
-        ("f_number", ctypes.c_double),
-        ("focus_m", ctypes.c_double),
-        ("sensor_width_mm", ctypes.c_double),
-        ("sensor_height_mm", ctypes.c_double),
-        ("fov_y_degrees", ctypes.c_double),
-        ("coc_scale", ctypes.c_double),
-        ("blur_at_infinity_px", ctypes.c_double),
-        ("max_radius_px", ctypes.c_double),
-        ("leak", ctypes.c_double),
-        ("budget", ctypes.c_double),
-        ("max_error", ctypes.c_double),
-    ]
+_COLOURS = ("pointer red green blue", "step pixel_bytes row_bytes")
+_DEPTHS = ("pointer depth", "step depth_pixel_bytes depth_row_bytes", "int colour_type depth_type")
+Picture = struct(
+    "softfocus_picture",
+    "int width height",
+    *_COLOURS,
+    *_DEPTHS,
+    "pointer objects radii_px behind transparent opacity",
+    "int behind_count transparent_count",
+)
+Target = struct("softfocus_target", *_COLOURS, *_DEPTHS)
+Settings = struct(
+    "softfocus_settings",
+    "text method profile",
+    "double focal_length_mm f_number focus_m sensor_width_mm sensor_height_mm fov_y_degrees coc_scale",
+    "double blur_at_infinity_px max_radius_px leak budget max_error",
+)
 
 
 @functools.lru_cache(maxsize=None)

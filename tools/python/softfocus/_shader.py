@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from ._calls import Context, encoded, library
+from ._calls import Context, encoded, library, struct
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -16,65 +16,25 @@ _FRAGMENT = 1
 _FORMATS = {"uint8": 2, "float16": 4, "float32": 6}
 
 
-class _Source(ctypes.Structure):
-    """softfocus_shader_source."""
-
-    _fields_ = [
-        ("struct_size", ctypes.c_size_t),
-        ("stage", ctypes.c_int32),
-        ("text", ctypes.c_char_p),
-        ("words", ctypes.c_void_p),
-        ("word_count", ctypes.c_size_t),
-        ("name", ctypes.c_char_p),
-        ("convention", ctypes.c_char_p),
-        ("defines", ctypes.c_void_p),
-        ("define_count", ctypes.c_size_t),
-        ("read_include", ctypes.c_void_p),
-        ("user", ctypes.c_void_p),
-    ]
-
-
-class _Texels(ctypes.Structure):
-    """softfocus_texels."""
-
-    _fields_ = [
-        ("struct_size", ctypes.c_size_t),
-        ("width", ctypes.c_int32),
-        ("height", ctypes.c_int32),
-        ("format", ctypes.c_int32),
-        ("first", ctypes.c_void_p),
-        ("row_bytes", ctypes.c_ssize_t),
-        ("slices", ctypes.c_int32),
-        ("slice_bytes", ctypes.c_ssize_t),
-    ]
+_Source = struct(
+    "softfocus_shader_source",
+    "int stage",
+    "text text",
+    "pointer words",
+    "size word_count",
+    "text name convention",
+    "pointer defines",
+    "size define_count",
+    "pointer read_include user",
+)
+_Texels = struct(
+    "softfocus_texels", "int width height format", "pointer first", "step row_bytes", "int slices", "step slice_bytes"
+)
+_Sampler = struct("softfocus_sampler", "int filter wrap_u wrap_v compare wrap_w")
+_Pass = struct("softfocus_pass", "pointer targets", "int target_count", "text profile", "long budget")
 
 
-class _Sampler(ctypes.Structure):
-    """softfocus_sampler."""
-
-    _fields_ = [
-        ("struct_size", ctypes.c_size_t),
-        ("filter", ctypes.c_int32),
-        ("wrap_u", ctypes.c_int32),
-        ("wrap_v", ctypes.c_int32),
-        ("compare", ctypes.c_int32),
-        ("wrap_w", ctypes.c_int32),
-    ]
-
-
-class _Pass(ctypes.Structure):
-    """softfocus_pass."""
-
-    _fields_ = [
-        ("struct_size", ctypes.c_size_t),
-        ("targets", ctypes.c_void_p),
-        ("target_count", ctypes.c_int32),
-        ("profile", ctypes.c_char_p),
-        ("budget", ctypes.c_uint64),
-    ]
-
-
-def _texels_of(array: NDArray[Any]) -> _Texels:
+def _texels_of(array: NDArray[Any]) -> Any:
     *slices, height, width, _ = array.shape
     return _Texels(
         ctypes.sizeof(_Texels),

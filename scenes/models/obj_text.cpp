@@ -1,4 +1,4 @@
-#include "scenes/load/obj_text.h"
+#include "scenes/models/obj_text.h"
 
 #include <algorithm>
 #include <charconv>
@@ -10,6 +10,7 @@
 
 #include "scenes/files/decimal.h"
 #include "scenes/files/scene_error.h"
+#include "scenes/models/model.h"
 
 namespace softfocus {
 namespace {

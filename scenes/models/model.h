@@ -5,9 +5,11 @@
 #include <glm/vec3.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "scenes/load/mtl_file.h"
+#include "raster/threads/parallel.h"
+#include "scenes/models/mtl_file.h"
 #include "scenes/scene.h"
 
 namespace softfocus {
@@ -31,6 +33,17 @@ struct Model {
   std::optional<Camera> camera{};  ///< without near and far
   std::vector<Light> lights{};
 };
+
+/// Whether a name is a model's file: ".gltf", ".glb", ".obj".
+bool is_model_name(std::string_view name);
+
+/// load_gltf_model() or load_obj_model(), by the end of the name.
+Model load_model(const std::filesystem::path& file, ThreadPool* pool);
+
+// What readers share.
+
+/// Coordinates beyond this are taken for damage; their squares are still floats.
+inline constexpr float kLargestCoordinate = 1e9f;
 
 /// The middle of a box, in whole units, where it is so far from the origin that binary32 would lose
 /// more than six bits of what the box holds; else the origin.

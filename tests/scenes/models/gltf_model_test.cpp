@@ -1,172 +1,18 @@
-// glTF models: geometry, materials, camera and lights against numbers by hand, and what is refused.
+// glTF models: geometry, camera and lights against numbers by hand, and what is refused.
 
-#include "scenes/load/gltf_model.h"
+#include "scenes/models/gltf_model.h"
 
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 #include <limits>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "raster/images/texel.h"
 #include "raster/numbers/vector_math.h"
 #include "scenes/load/load_scene.h"
-#include "scenes/load/model_scene.h"
-#include "tests/support/scene_test_files.h"
-#include "tests/support/skip.h"
-#include "tools/files/base64.h"
+#include "tests/scenes/models/gltf_text.h"
 
 using namespace softfocus;
 using namespace softfocus::test;
-
-namespace {
-
-constexpr int kByte = 5121, kShort = 5123, kInt = 5125, kFloat = 5126;
-
-/// Red and opaque beside green of an alpha of 100.
-const std::string kTwoTexels =
-    "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAYAAAD0In+KAAAAD0lEQVR4nGP4z8DwHwhT"
-    "ABBdA2K1LfSlAAAAAElFTkSuQmCC";
-
-/// The text of a model: what tests put into its lists, and a buffer of their numbers.
-struct Gltf {
-  std::string bytes, views, accessors, meshes, nodes, more;
-
-  static void item(std::string& list, const std::string& text) {
-    list += (list.empty() ? "" : ",") + text;
-  }
-
-  /// A view of bytes; its number.
-  int view(const std::string& of, int stride = 0) {
-    item(views, "{\"buffer\":0,\"byteOffset\":" + std::to_string(bytes.size()) +
-                    ",\"byteLength\":" + std::to_string(of.size()) +
-                    (stride != 0 ? ",\"byteStride\":" + std::to_string(stride) : "") + "}");
-    bytes += of;
-    bytes.resize((bytes.size() + 3) / 4 * 4);
-    return view_count++;
-  }
-  /// An accessor of numbers of a type; its number.
-  template <class Number>
-  int add(const std::vector<Number>& numbers, const std::string& type, int width, int component,
-          const std::string& also = "") {
-    std::string of;
-    for (const Number number : numbers) {
-      std::uint64_t bits = 0;
-      std::memcpy(&bits, &number, sizeof number);
-      if constexpr (sizeof(Number) == 4) {
-        std::uint32_t word = 0;
-        std::memcpy(&word, &number, 4);
-        bits = word;
-      } else if constexpr (sizeof(Number) == 2) {
-        bits = static_cast<std::uint16_t>(number);
-      } else {
-        bits = static_cast<std::uint8_t>(number);
-      }
-      for (std::size_t i = 0; i < sizeof number; ++i) {
-        of.push_back(static_cast<char>(bits >> (8 * i) & 255));
-      }
-    }
-    const int number_of_view = view(of);
-    item(accessors, "{\"bufferView\":" + std::to_string(number_of_view) +
-                        ",\"componentType\":" + std::to_string(component) + ",\"count\":" +
-                        std::to_string(numbers.size() / static_cast<std::size_t>(width)) +
-                        ",\"type\":\"" + type + "\"" + also + "}");
-    return accessor_count++;
-  }
-  int floats(const std::vector<float>& numbers, const std::string& type, int width) {
-    return add(numbers, type, width, kFloat);
-  }
-  void mesh(const std::string& attributes, const std::string& also = "") {
-    item(meshes, "{\"primitives\":[{\"attributes\":{" + attributes + "}" + also + "}]}");
-  }
-  void node(const std::string& text) { item(nodes, "{" + text + "}"); }
-
-  std::string text(const std::string& buffer_uri) const {
-    return "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{" + buffer_uri +
-           "\"byteLength\":" + std::to_string(bytes.size()) + "}],\"bufferViews\":[" + views +
-           "],\"accessors\":[" + accessors + "],\"meshes\":[" + meshes + "],\"nodes\":[" +
-           (nodes.empty() ? "{\"mesh\":0}" : nodes) + "]" + more + "}";
-  }
-  std::string text() const {
-    const auto* data = reinterpret_cast<const std::byte*>(bytes.data());
-    return text("\"uri\":\"data:application/octet-stream;base64," + base64({data, bytes.size()}) +
-                "\",");
-  }
-  std::string binary() const {
-    std::string json = text("");
-    json.resize((json.size() + 3) / 4 * 4, ' ');
-    std::string made;
-    const auto word = [&](std::size_t value) {
-      for (int i = 0; i < 4; ++i) made.push_back(static_cast<char>(value >> (8 * i) & 255));
-    };
-    made += "glTF";
-    word(2);
-    word(12 + 8 + json.size() + 8 + bytes.size());
-    word(json.size());
-    made += "JSON" + json;
-    word(bytes.size());
-    made += std::string{"BIN\0", 4} + bytes;
-    return made;
-  }
-
-  int view_count = 0, accessor_count = 0;
-};
-
-/// One triangle: (0, 0, 0), (1, 0, 0), (0, 2, 0).
-Gltf triangle(const std::string& attributes = "", const std::string& also = "") {
-  Gltf gltf;
-  gltf.floats({0, 0, 0, 1, 0, 0, 0, 2, 0}, "VEC3", 3);
-  gltf.mesh("\"POSITION\":0" + attributes, also);
-  return gltf;
-}
-
-Model load(const std::string& bytes, const std::string& name = "model.gltf") {
-  const TemporaryDirectory directory;
-  write_file(directory.file(name), bytes);
-  return load_gltf_model(directory.file(name));
-}
-
-Model load(const Gltf& gltf) { return load(gltf.text()); }
-
-// What is wrong with it, without the file's name.
-std::string complaint(const std::string& bytes) {
-  const TemporaryDirectory directory;
-  const std::string file = directory.file("model.gltf");
-  write_file(file, bytes);
-  const std::string said = scene_error_of([&] { load_gltf_model(file); });
-  return said.starts_with(file + ": ") ? said.substr(file.size() + 2) : "unnamed: " + said;
-}
-
-bool lacks_gltf() {
-  if (complaint(triangle().text() + "x").find("was built without glTF") == std::string::npos) {
-    return false;
-  }
-  skip("glTF", "built without tinygltf");
-  return true;
-}
-
-bool warns(const Model& model, const std::string& of) {
-  return std::any_of(model.warnings.begin(), model.warnings.end(),
-                     [&](const std::string& line) { return line.find(of) != std::string::npos; });
-}
-
-std::vector<glm::vec3> corners(const Model& model, std::size_t part = 0) {
-  const Mesh& mesh = model.parts.at(part).mesh;
-  std::vector<glm::vec3> made;
-  for (const std::uint32_t index : mesh.indices) made.push_back(mesh.positions.at(index));
-  return made;
-}
-
-using Corners = std::vector<glm::vec3>;
-
-std::string material(const std::string& text) { return ",\"materials\":[{" + text + "}]"; }
-
-}  // namespace
 
 TEST_CASE("a triangle has its corners, flat normals, and the material for none") {
   if (lacks_gltf()) return;
@@ -269,6 +115,12 @@ TEST_CASE("whole numbers are shares of 1, elements may lie apart, and sparse one
   CHECK(mesh.colours[first] == glm::vec3{0, 0, 1});
   CHECK(mesh.colours[mesh.indices[1]] == glm::vec3{1, 0, 0.2f});
 
+  Gltf quantised = triangle(",\"NORMAL\":1");
+  quantised.add<std::int8_t>({0, 0, 127, 0, -127, 0, -128, 0, 0}, "VEC3", 3, 5120,
+                             ",\"normalized\":true");
+  const std::vector<glm::vec3> normals{{0, 0, 1}, {0, -1, 0}, {-1, 0, 0}};
+  CHECK(load(quantised).parts[0].mesh.normals == normals);
+
   Gltf apart;
   // Positions and one number more, 16 bytes apart.
   std::string rows;
@@ -361,148 +213,6 @@ TEST_CASE("vertices that a primitive leaves out are nowhere, whoever shares them
   const Model model = load(gltf);
   CHECK(model.parts[0].mesh.positions.size() == 6);
   CHECK(corners(model)[5] == glm::vec3{0, 0, 1});
-}
-
-TEST_CASE("a metallic-roughness material becomes Blinn-Phong's by the rule") {
-  if (lacks_gltf()) return;
-  const auto of = [](const std::string& text) {
-    Gltf gltf = triangle("", ",\"material\":0");
-    gltf.more = material(text);
-    return load(gltf).materials[0];
-  };
-  const Material painted =
-      of("\"name\":\"red\",\"doubleSided\":true,\"pbrMetallicRoughness\":{\"baseColorFactor\":"
-         "[0.5,0.25,0,1],\"metallicFactor\":0.5,\"roughnessFactor\":0.5}");
-  CHECK(painted.name == "red");
-  CHECK(painted.two_sided);
-  CHECK(painted.diffuse == glm::vec3{0.375f, 0.1875f, 0.0f});
-  CHECK(painted.ambient == painted.diffuse);
-  CHECK(painted.shininess == 30);  // 2 / 0.0625 - 2
-  CHECK(painted.specular.x == 0.5f);
-  CHECK(painted.specular.y == doctest::Approx(0.145 * 38 / 8 / 2));
-  CHECK(painted.specular.z == doctest::Approx(0.02 * 38 / 8 / 2));
-  CHECK(painted.opacity == 1.0f);
-  const Material plain = of("\"pbrMetallicRoughness\":{}");
-  CHECK(!plain.two_sided);
-  CHECK(plain.diffuse == glm::vec3{0.5f});
-  CHECK(plain.specular == glm::vec3{0.0f});  // as rough as can be
-  CHECK(of("\"pbrMetallicRoughness\":{\"roughnessFactor\":0}").shininess == 1024);
-  const Material unlit =
-      of("\"extensions\":{\"KHR_materials_unlit\":{}},"
-         "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,0.25,0,1]}");
-  CHECK(!unlit.lit);
-  CHECK(unlit.diffuse == glm::vec3{0.5f, 0.25f, 0.0f});
-  const Material lamp =
-      of("\"emissiveFactor\":[1,0.5,0],"
-         "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0,0,0,1]}");
-  CHECK(!lamp.lit);
-  CHECK(lamp.diffuse == glm::vec3{1.0f, 0.5f, 0.0f});
-}
-
-TEST_CASE("textures have their places, their mode of alpha and their means") {
-  if (lacks_gltf()) return;
-  const auto of = [](const std::string& text, const std::string& uri) {
-    Gltf gltf = triangle(",\"TEXCOORD_0\":1", ",\"material\":0");
-    gltf.floats({0.25f, 0.5f, 1, 0, 0, 1}, "VEC2", 2);
-    gltf.more = material(text) +
-                ",\"textures\":[{\"source\":0,\"sampler\":0}],\"samplers\":[{"
-                "\"wrapS\":33071,\"wrapT\":33648,\"magFilter\":9728}],\"images\":[{\"uri\":\"" +
-                uri + "\"}]";
-    return load(gltf);
-  };
-  const std::string colour =
-      "\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,1,1,0.5],"
-      "\"baseColorTexture\":{\"index\":0}}";
-  const Model opaque = of(colour, kTwoTexels);
-  REQUIRE(opaque.materials[0].texture == 0u);
-  CHECK(load_texel(opaque.textures[0].levels[0], 0, 0) == glm::vec4{1, 0, 0, 1});
-  CHECK(opaque.materials[0].sampler.wrap_u == Wrap::clamp_to_edge);
-  CHECK(opaque.materials[0].sampler.wrap_v == Wrap::mirrored_repeat);
-  CHECK(opaque.materials[0].sampler.filter == Filter::nearest);
-  CHECK(opaque.materials[0].opacity == 1.0f);
-  CHECK(!opaque.materials[0].opacity_texture);
-
-  const Model blended = of("\"alphaMode\":\"BLEND\"," + colour, kTwoTexels);
-  CHECK(blended.materials[0].opacity == 0.5f);
-  CHECK(!blended.materials[0].cut_out);
-  const Image& opacity = blended.textures.at(*blended.materials[0].opacity_texture).levels[0];
-  CHECK(load_texel(opacity, 1, 0).x == doctest::Approx(100.0 / 255.0));
-
-  // 100 / 255 * 0.5 is below 0.3, and above 0.1.
-  for (const auto& [cutoff, there] : {std::pair{"0.3", 0.0f}, std::pair{"0.1", 1.0f}}) {
-    const Model masked = of(
-        "\"alphaMode\":\"MASK\",\"alphaCutoff\":" + std::string{cutoff} + "," + colour, kTwoTexels);
-    CHECK(masked.materials[0].cut_out);
-    CHECK(masked.materials[0].opacity == 1.0f);
-    const Image& mask = masked.textures.at(*masked.materials[0].opacity_texture).levels[0];
-    CHECK(load_texel(mask, 0, 0).x == 1.0f);
-    CHECK(load_texel(mask, 1, 0).x == there);
-  }
-
-  const Model placed =
-      of("\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,\"extensions\":{"
-         "\"KHR_texture_transform\":{\"offset\":[0.5,0.25],\"scale\":[2,4],"
-         "\"rotation\":1.5707963267948966}}}}",
-         kTwoTexels);
-  // (0.5, 2) turned: u' = v, v' = -u.
-  CHECK(placed.parts[0].mesh.uvs[placed.parts[0].mesh.indices[0]] == glm::vec2{2.5f, -0.25f});
-
-  // Roughness is the mean of green, 0.5; metallic that of blue, 0.
-  const Model means =
-      of("\"pbrMetallicRoughness\":{\"metallicRoughnessTexture\":{\"index\":0}}", kTwoTexels);
-  CHECK(means.materials[0].diffuse == glm::vec3{1.0f});
-  CHECK(means.materials[0].shininess == 30);
-
-  Gltf sourceless = triangle("", ",\"material\":0");
-  sourceless.more = material(colour) +
-                    ",\"textures\":[{\"extensions\":{\"EXT_texture_webp\":{}}}]" +
-                    ",\"extensionsUsed\":[\"EXT_texture_webp\"]";
-  const Model without = load(sourceless);
-  CHECK(warns(without, "texture 0 has no PNG or JPEG"));
-  CHECK(warns(without, "EXT_texture_webp is not understood"));
-
-  const Model missing = of(colour, "not%20there.png");
-  CHECK(!missing.materials[0].texture);
-  CHECK(warns(missing, "texture not%20there.png is missing"));
-  const Model other = of(colour, "data:image/webp;base64,UklGRg==");
-  CHECK(!other.materials[0].texture);
-  CHECK(warns(other, "image 0 is neither PNG nor JPEG, and left out"));
-}
-
-TEST_CASE("a picture beside the model is found by its name with percents, and listed") {
-  if (lacks_gltf()) return;
-  const TemporaryDirectory directory;
-  write_file(directory.file("a b.png"), png_bytes(4, 4));
-  Gltf gltf = triangle("", ",\"material\":0");
-  gltf.more = material("\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}") +
-              ",\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"a%20b.png\"}]";
-  write_file(directory.file("buffer.bin"), gltf.bytes + "padded");
-  write_file(directory.file("model.gltf"), gltf.text("\"uri\":\"buffer.bin\","));
-  const Model model = load_gltf_model(directory.file("model.gltf"));
-  CHECK(model.textures.size() == 1);
-  const std::vector<std::filesystem::path> files{
-      directory.file("model.gltf"), directory.file("buffer.bin"), directory.file("a b.png")};
-  CHECK(model.files == files);
-}
-
-TEST_CASE("a picture in a buffer is read, as .glb files have it, but not past its end") {
-  if (lacks_gltf()) return;
-  Gltf gltf = triangle("", ",\"material\":0");
-  const std::string png = png_bytes(4, 2);
-  const int view = gltf.view(png);
-  gltf.more =
-      material("\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}") +
-      ",\"textures\":[{\"source\":0}],\"images\":[{\"mimeType\":\"image/png\",\"bufferView\":" +
-      std::to_string(view) + "}]";
-  const Model model = load(gltf.binary(), "model.glb");
-  REQUIRE(model.textures.size() == 1);
-  CHECK(model.textures[0].levels[0].width == 4);
-  CHECK(load_texel(model.textures[0].levels[0], 0, 0) == glm::vec4{1, 0, 0, 1});
-  std::string text = gltf.text();
-  const std::string length = "\"byteLength\":" + std::to_string(png.size());
-  text.replace(text.find(length), length.size(), "\"byteLength\":99999");
-  CHECK(complaint(text) ==
-        "bufferView 1 is shorter than what is read from it, or its buffer ends before");
 }
 
 TEST_CASE("the first camera and the lights stand where their nodes are") {

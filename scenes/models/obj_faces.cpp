@@ -1,4 +1,4 @@
-#include "scenes/load/obj_faces.h"
+#include "scenes/models/obj_faces.h"
 
 #include <algorithm>
 #include <bit>
@@ -6,7 +6,7 @@
 
 #include "raster/numbers/random_bits.h"
 #include "raster/threads/loops.h"
-#include "scenes/load/first_come_numbers.h"
+#include "scenes/models/first_come_numbers.h"
 
 namespace softfocus {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "raster/threads/parallel.h"
-#include "scenes/load/obj_text.h"
+#include "scenes/models/obj_text.h"
 
 namespace softfocus {
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "raster/threads/parallel.h"
-#include "scenes/load/model.h"
+#include "scenes/models/model.h"
 
 namespace softfocus {
 

@@ -1,7 +1,7 @@
 #pragma once
 // Materials and textures of a glTF file.
 
-#include "scenes/load/gltf_file.h"
+#include "scenes/models/gltf_file.h"
 
 namespace softfocus {
 
@@ -14,9 +14,9 @@ struct ShownColour {
   bool shines = false;
 };
 
-ShownColour shown_colour(GltfFile& reader, const tinygltf::Material& from);
+ShownColour shown_colour(GltfFile& file, const tinygltf::Material& from);
 
 /// By the rule of gltf_model.h. Its textures become the model's.
-Material material_of(GltfFile& reader, const tinygltf::Material& from);
+Material material_of(GltfFile& file, const tinygltf::Material& from);
 
 }  // namespace softfocus

@@ -1,4 +1,4 @@
-#include "scenes/load/obj_model.h"
+#include "scenes/models/obj_model.h"
 
 #include <doctest/doctest.h>
 
@@ -9,7 +9,7 @@
 
 #include "scenes/draw/frame_matrices.h"
 #include "scenes/load/model_scene.h"
-#include "scenes/load/obj_text.h"
+#include "scenes/models/obj_text.h"
 #include "tests/support/mesh_checks.h"
 #include "tests/support/scene_test_files.h"
 

@@ -51,9 +51,6 @@ struct ObjText {
 
 inline constexpr std::uint32_t kMaxFaceCorners = 1024;
 
-/// Coordinates beyond this are taken for damage; their squares are still floats.
-inline constexpr float kLargestCoordinate = 1e9f;
-
 /// Understands v (x y z, and perhaps r g b), vt, vn, f, s, usemtl, mtllib and lines continued by a
 /// backslash, and passes over the rest (groups, lines, curves). `file` is for complaints. `origin`
 /// is subtracted from positions, in double precision before they are rounded. Exporters write some

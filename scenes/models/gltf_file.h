@@ -15,7 +15,7 @@
 #include <tuple>
 #include <vector>
 
-#include "scenes/load/model.h"
+#include "scenes/models/model.h"
 
 // Files are read by read_file_bytes(), pictures by texture_of_bytes().
 #define TINYGLTF_NO_STB_IMAGE
@@ -35,30 +35,30 @@ struct GltfFile {
   std::map<std::tuple<int, double, double>, std::uint32_t> opacity_of_image{};
   /// Roughness and metallic, means of a picture.
   std::map<int, std::array<double, 2>> means_of_image{};
-  std::map<std::string, std::size_t> length_of_file{};
-  std::set<std::string> told{};
-  std::size_t numbers_left = std::size_t{1} << 30;  ///< that may still be read
+  std::map<std::string, std::size_t> length_of_buffer{};  ///< by its file's name
+  std::set<std::string> told{};                           ///< warnings
+  std::size_t numbers_left = std::size_t{1} << 30;        ///< that may still be read
 };
 
-/// Throws SceneError for what is no glTF 2.0, or needs an extension for its geometry.
+/// Throws SceneError for a file that is no glTF 2.0, or needs an extension that is not understood.
 GltfFile open_gltf(const std::filesystem::path& path);
 
 /// Throws SceneError, "PATH: reason".
-[[noreturn]] void fail_gltf(const GltfFile& reader, const std::string& reason);
+[[noreturn]] void fail_gltf(const GltfFile& file, const std::string& reason);
 
 /// Each warning once.
-void warn_gltf(GltfFile& reader, const std::string& what);
+void warn_gltf(GltfFile& file, const std::string& what);
 
 /// "node 3".
 std::string numbered(const char* what, std::size_t number);
 
 /// An item by its number in the file, which may be wrong.
 template <class Item>
-const Item& item_of(const GltfFile& reader, const std::vector<Item>& items, int number,
+const Item& item_of(const GltfFile& file, const std::vector<Item>& items, int number,
                     const char* what) {
   if (number < 0 || static_cast<std::size_t>(number) >= items.size()) {
-    fail_gltf(reader, std::string{"there is no "} + what + " " + std::to_string(number) + " of " +
-                          std::to_string(items.size()));
+    fail_gltf(file, std::string{"there is no "} + what + " " + std::to_string(number) + " of " +
+                        std::to_string(items.size()));
   }
   return items[static_cast<std::size_t>(number)];
 }
@@ -75,13 +75,13 @@ struct GltfNumbers {
 };
 
 /// All of a bufferView.
-std::string view_bytes(const GltfFile& reader, int number);
+std::string view_bytes(const GltfFile& file, int number);
 
 /// Throws for one without elements.
-GltfNumbers read_accessor(GltfFile& reader, int number);
+GltfNumbers read_accessor(GltfFile& file, int number);
 
 /// Of an attribute, or none; with `count` elements of `least` to `most` numbers.
-std::optional<GltfNumbers> read_attribute(GltfFile& reader, const std::map<std::string, int>& of,
+std::optional<GltfNumbers> read_attribute(GltfFile& file, const std::map<std::string, int>& of,
                                           const std::string& name, std::size_t count,
                                           std::size_t least, std::size_t most);
 
@@ -96,6 +96,11 @@ int index_in(const tinygltf::Value& object, const char* key);
 
 /// A URI's text: %20 is a blank.
 std::string without_percents(std::string_view uri);
+
+inline constexpr const char* kDraco = "KHR_draco_mesh_compression";
+
+/// The complaint about geometry that an extension packs.
+std::string packed_by(std::string_view extension);
 
 /// The beginning of what may be very long.
 std::string shortened(std::string text);

@@ -1,4 +1,4 @@
-#include "scenes/load/mtl_file.h"
+#include "scenes/models/mtl_file.h"
 
 #include <algorithm>
 #include <array>
@@ -11,8 +11,8 @@
 #include "scenes/files/decimal.h"
 #include "scenes/files/file_bytes.h"
 #include "scenes/files/texture_file.h"
-#include "scenes/load/obj_text.h"
 #include "scenes/make/procedural_texture.h"
+#include "scenes/models/obj_text.h"
 
 #define TINYOBJLOADER_IMPLEMENTATION
 #include <tiny_obj_loader.h>

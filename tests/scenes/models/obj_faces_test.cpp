@@ -1,4 +1,4 @@
-#include "scenes/load/obj_faces.h"
+#include "scenes/models/obj_faces.h"
 
 #include <doctest/doctest.h>
 
@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "scenes/load/obj_model.h"
+#include "scenes/models/obj_model.h"
 #include "tests/support/mesh_checks.h"
 #include "tests/support/random.h"
 #include "tests/support/scene_test_files.h"

@@ -1,11 +1,11 @@
-#include "scenes/load/mtl_file.h"
+#include "scenes/models/mtl_file.h"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <string>
 
-#include "scenes/load/obj_model.h"
+#include "scenes/models/obj_model.h"
 #include "tests/support/scene_test_files.h"
 
 using namespace softfocus;

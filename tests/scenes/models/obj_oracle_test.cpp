@@ -6,7 +6,7 @@
 #include <sstream>
 #include <string>
 
-#include "scenes/load/obj_text.h"
+#include "scenes/models/obj_text.h"
 #include "tests/support/test_images.h"
 
 using namespace softfocus;

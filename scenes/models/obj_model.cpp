@@ -1,4 +1,4 @@
-#include "scenes/load/obj_model.h"
+#include "scenes/models/obj_model.h"
 
 #include <algorithm>
 #include <array>
@@ -11,11 +11,11 @@
 #include "raster/numbers/vector_math.h"
 #include "scenes/files/file_bytes.h"
 #include "scenes/files/scene_error.h"
-#include "scenes/load/first_come_numbers.h"
-#include "scenes/load/mtl_file.h"
-#include "scenes/load/obj_faces.h"
-#include "scenes/load/obj_text.h"
 #include "scenes/make/polygon.h"
+#include "scenes/models/first_come_numbers.h"
+#include "scenes/models/mtl_file.h"
+#include "scenes/models/obj_faces.h"
+#include "scenes/models/obj_text.h"
 
 namespace softfocus {
 namespace {

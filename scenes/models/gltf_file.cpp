@@ -1,4 +1,4 @@
-#include "scenes/load/gltf_file.h"
+#include "scenes/models/gltf_file.h"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 
 #include "scenes/files/file_bytes.h"
 #include "scenes/files/scene_error.h"
-#include "scenes/load/obj_text.h"
+#include "scenes/models/obj_text.h"
 
 // It asserts what only the file decides, and goes on well without.
 #define TINYGLTF_IMPLEMENTATION
@@ -27,13 +27,13 @@
 
 namespace softfocus {
 
-void fail_gltf(const GltfFile& reader, const std::string& reason) {
-  throw SceneError(reader.path.string() + ": " + reason);
+void fail_gltf(const GltfFile& file, const std::string& reason) {
+  throw SceneError(file.path.string() + ": " + reason);
 }
 
-void warn_gltf(GltfFile& reader, const std::string& what) {
-  if (!reader.told.insert(what).second) return;
-  reader.model.warnings.push_back(printable(reader.path.string() + ": " + what));
+void warn_gltf(GltfFile& file, const std::string& what) {
+  if (!file.told.insert(what).second) return;
+  file.model.warnings.push_back(printable(file.path.string() + ": " + what));
 }
 
 std::string numbered(const char* what, std::size_t number) {
@@ -61,6 +61,11 @@ std::string without_percents(std::string_view uri) {
   return text;
 }
 
+std::string packed_by(std::string_view extension) {
+  return "its geometry is packed (" + std::string{extension} +
+         "); the same model without compression would do";
+}
+
 std::string shortened(std::string text) {
   constexpr std::size_t kMost = 200;
   if (text.size() > kMost) text.replace(kMost, text.npos, "...");
@@ -70,11 +75,6 @@ std::string shortened(std::string text) {
 namespace {
 
 constexpr std::size_t kMaxGltfBytes = std::size_t{1} << 30;
-
-constexpr const char* kPackedGeometry = "KHR_draco_mesh_compression";
-std::string is_packed(const std::string& by) {
-  return "its geometry is packed (" + by + "); the same model without compression would do";
-}
 
 // Beside the model or below: tinygltf also looks where the program runs.
 bool is_beside(const std::string& path, void* user) {
@@ -86,12 +86,12 @@ bool is_beside(const std::string& path, void* user) {
 // A file may be longer than the buffer: exporters pad it.
 bool read_buffer_file(std::vector<unsigned char>* bytes, std::string* error,
                       const std::string& path, void* user) {
-  GltfFile& reader = *static_cast<GltfFile*>(user);
+  GltfFile& file = *static_cast<GltfFile*>(user);
   try {
     const std::string read = read_file_bytes(path, kMaxGltfBytes);
-    reader.model.files.emplace_back(path);
-    const auto length = reader.length_of_file.find(std::filesystem::path{path}.filename().string());
-    const std::size_t most = length != reader.length_of_file.end() ? length->second : read.size();
+    file.model.files.emplace_back(path);
+    const auto length = file.length_of_buffer.find(std::filesystem::path{path}.filename().string());
+    const std::size_t most = length != file.length_of_buffer.end() ? length->second : read.size();
     bytes->assign(read.begin(),
                   read.begin() + static_cast<std::ptrdiff_t>(std::min(most, read.size())));
     return true;
@@ -122,7 +122,7 @@ bool keep_picture(tinygltf::Image* image, const int, std::string*, std::string*,
 }
 
 // tinygltf takes nested lists apart on the stack, without a limit.
-void check_nesting(const GltfFile& reader, std::string_view json) {
+void check_nesting(const GltfFile& file, std::string_view json) {
   constexpr int kMostNested = 256;
   int depth = 0;
   bool in_text = false;
@@ -133,7 +133,7 @@ void check_nesting(const GltfFile& reader, std::string_view json) {
     } else if (letter == '"') {
       in_text = !in_text;
     } else if (!in_text && (letter == '[' || letter == '{') && ++depth > kMostNested) {
-      fail_gltf(reader, "has lists in each other, deeper than " + std::to_string(kMostNested));
+      fail_gltf(file, "has lists in each other, deeper than " + std::to_string(kMostNested));
     } else if (!in_text && (letter == ']' || letter == '}')) {
       --depth;
     }
@@ -152,7 +152,7 @@ std::string_view json_of(std::string_view bytes, bool is_binary) {
 }
 
 // The lengths of buffers, by the last part of their files' names.
-void find_lengths(GltfFile& reader, std::string_view text) {
+void find_lengths(GltfFile& file, std::string_view text) {
   const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
   if (!json.is_object() || !json.contains("buffers")) return;
   for (const nlohmann::json& buffer : json["buffers"]) {
@@ -161,7 +161,7 @@ void find_lengths(GltfFile& reader, std::string_view text) {
     const std::string uri = buffer["uri"].get<std::string>();
     if (uri.starts_with("data:")) continue;
     const std::string name = std::filesystem::path{without_percents(uri)}.filename().string();
-    std::size_t& length = reader.length_of_file[name];
+    std::size_t& length = file.length_of_buffer[name];
     length = std::max(length, buffer["byteLength"].get<std::size_t>());
   }
 }
@@ -175,75 +175,74 @@ bool is_harmless(const std::string& extension) {
                      [&](std::string_view begin) { return extension.starts_with(begin); });
 }
 
-void check_extensions(GltfFile& reader) {
+void check_extensions(GltfFile& file) {
   constexpr std::array<std::string_view, 4> kUnderstood = {
       "KHR_materials_unlit", "KHR_texture_transform", "KHR_lights_punctual",
       "KHR_mesh_quantization"};
-  for (const std::string& name : reader.gltf.extensionsRequired) {
+  for (const std::string& name : file.gltf.extensionsRequired) {
     if (is_harmless(name)) continue;
-    fail_gltf(reader, name.ends_with("_compression")
-                          ? is_packed(name)
-                          : "needs " + name +
-                                ", which is not understood; the same model without "
-                                "it would do");
+    fail_gltf(file, name.ends_with("_compression")
+                        ? packed_by(name)
+                        : "needs " + name +
+                              ", which is not understood; the same model without "
+                              "it would do");
   }
-  for (const std::string& name : reader.gltf.extensionsUsed) {
+  for (const std::string& name : file.gltf.extensionsUsed) {
     if (std::find(kUnderstood.begin(), kUnderstood.end(), name) == kUnderstood.end()) {
-      warn_gltf(reader, name + " is not understood");
+      warn_gltf(file, name + " is not understood");
     }
   }
 }
 
-void parse_gltf(GltfFile& reader) {
-  const std::string bytes = read_file_bytes(reader.path, kMaxGltfBytes);
+void parse_gltf(GltfFile& file) {
+  const std::string bytes = read_file_bytes(file.path, kMaxGltfBytes);
   const bool is_binary = bytes.starts_with("glTF");
-  check_nesting(reader, json_of(bytes, is_binary));
-  find_lengths(reader, json_of(bytes, is_binary));
-  reader.model.files.push_back(reader.path);
+  check_nesting(file, json_of(bytes, is_binary));
+  find_lengths(file, json_of(bytes, is_binary));
+  file.model.files.push_back(file.path);
   tinygltf::FsCallbacks callbacks{};
   callbacks.FileExists = is_beside;
   callbacks.ExpandFilePath = [](const std::string& path, void*) { return path; };
   callbacks.ReadWholeFile = read_buffer_file;
   callbacks.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&,
                                 void*) { return false; };
-  callbacks.user_data = &reader;
+  callbacks.user_data = &file;
   set_size_callback(callbacks);
   tinygltf::TinyGLTF parser;
   parser.SetFsCallbacks(callbacks);
   parser.SetImageLoader(keep_picture, nullptr);
   std::string error, warning;
   const auto size = static_cast<unsigned>(bytes.size());
-  const std::string folder = reader.path.parent_path().string();
+  const std::string folder = file.path.parent_path().string();
   const bool is_read =
       is_binary
-          ? parser.LoadBinaryFromMemory(&reader.gltf, &error, &warning,
+          ? parser.LoadBinaryFromMemory(&file.gltf, &error, &warning,
                                         reinterpret_cast<const unsigned char*>(bytes.data()), size,
                                         folder)
-          : parser.LoadASCIIFromString(&reader.gltf, &error, &warning, bytes.data(), size, folder);
+          : parser.LoadASCIIFromString(&file.gltf, &error, &warning, bytes.data(), size, folder);
   if (!is_read) {
     // Packed geometry without another form has no bufferViews.
-    const bool packs =
-        error.find("bufferView") != error.npos && bytes.find(kPackedGeometry) != bytes.npos;
+    const bool packs = error.find("bufferView") != error.npos && bytes.find(kDraco) != bytes.npos;
     std::replace(error.begin(), error.end(), '\n', ' ');
-    fail_gltf(reader, packs ? is_packed(kPackedGeometry)
-                            : "cannot be read (" + shortened(std::string{trimmed(error)}) +
-                                  "); a glTF 2.0 file, .gltf or .glb, would do");
+    fail_gltf(file, packs ? packed_by(kDraco)
+                          : "cannot be read (" + shortened(std::string{trimmed(error)}) +
+                                "); a glTF 2.0 file, .gltf or .glb, would do");
   }
-  const std::string& version = reader.gltf.asset.version;
+  const std::string& version = file.gltf.asset.version;
   if (!version.starts_with("2.")) {
-    fail_gltf(reader, (version.empty() ? "tells no version" : "is glTF " + version) +
-                          "; a glTF 2.0 file would do");
+    fail_gltf(file, (version.empty() ? "tells no version" : "is glTF " + version) +
+                        "; a glTF 2.0 file would do");
   }
-  check_extensions(reader);
+  check_extensions(file);
 }
 
 }  // namespace
 
 GltfFile open_gltf(const std::filesystem::path& path) {
   check_no_pipe(path);
-  GltfFile reader{path};
-  parse_gltf(reader);
-  return reader;
+  GltfFile file{path};
+  parse_gltf(file);
+  return file;
 }
 
 namespace {
@@ -296,11 +295,11 @@ double component_at(const unsigned char* bytes, int type, bool normalized) {
 
 // `count` elements of `element` bytes, `stride` apart, that begin at `offset` in a view of a
 // buffer.
-const unsigned char* elements_of(const GltfFile& reader, int view_number, std::size_t offset,
+const unsigned char* elements_of(const GltfFile& file, int view_number, std::size_t offset,
                                  std::size_t count, std::size_t element, std::size_t& stride) {
   const tinygltf::BufferView& view =
-      item_of(reader, reader.gltf.bufferViews, view_number, "bufferView");
-  const tinygltf::Buffer& buffer = item_of(reader, reader.gltf.buffers, view.buffer, "buffer");
+      item_of(file, file.gltf.bufferViews, view_number, "bufferView");
+  const tinygltf::Buffer& buffer = item_of(file, file.gltf.buffers, view.buffer, "buffer");
   stride = view.byteStride != 0 ? view.byteStride : element;
   const std::size_t all = buffer.data.size();
   const bool is_inside = view.byteOffset <= all && view.byteLength <= all - view.byteOffset;
@@ -308,8 +307,8 @@ const unsigned char* elements_of(const GltfFile& reader, int view_number, std::s
   if (!is_inside || element == 0 || (count > 1 && stride < element) || count == 0 ||
       offset > length || element > length - offset ||
       (count - 1) > (length - offset - element) / stride) {
-    fail_gltf(reader, "bufferView " + std::to_string(view_number) +
-                          " is shorter than what is read from it, or its buffer ends before");
+    fail_gltf(file, "bufferView " + std::to_string(view_number) +
+                        " is shorter than what is read from it, or its buffer ends before");
   }
   return buffer.data.data() + view.byteOffset + offset;
 }
@@ -320,27 +319,27 @@ bool is_whole(int type) {
          type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
 }
 
-void put_sparse(const GltfFile& reader, const tinygltf::Accessor& accessor, GltfNumbers& numbers) {
+void put_sparse(const GltfFile& file, const tinygltf::Accessor& accessor, GltfNumbers& numbers) {
   const auto& sparse = accessor.sparse;
   if (!sparse.isSparse || sparse.count <= 0) return;
   const auto count = static_cast<std::size_t>(sparse.count);
   const std::size_t component = bytes_of_component(accessor.componentType);
   const std::size_t index = bytes_of_component(sparse.indices.componentType);
   if (index == 0 || !is_whole(sparse.indices.componentType)) {
-    fail_gltf(reader, "a sparse accessor's indices have an unknown type");
+    fail_gltf(file, "a sparse accessor's indices have an unknown type");
   }
   std::size_t index_stride = 0, stride = 0;
   const unsigned char* places =
-      elements_of(reader, sparse.indices.bufferView,
+      elements_of(file, sparse.indices.bufferView,
                   static_cast<std::size_t>(sparse.indices.byteOffset), count, index, index_stride);
-  const unsigned char* values = elements_of(reader, sparse.values.bufferView,
+  const unsigned char* values = elements_of(file, sparse.values.bufferView,
                                             static_cast<std::size_t>(sparse.values.byteOffset),
                                             count, component * numbers.width, stride);
   for (std::size_t i = 0; i < count; ++i) {
     const double place =
         component_at(places + i * index_stride, sparse.indices.componentType, false);
     if (!(place >= 0.0 && place < static_cast<double>(numbers.count()))) {
-      fail_gltf(reader,
+      fail_gltf(file,
                 "a sparse accessor puts an element past its " + std::to_string(numbers.count()));
     }
     for (std::size_t k = 0; k < numbers.width; ++k) {
@@ -352,22 +351,22 @@ void put_sparse(const GltfFile& reader, const tinygltf::Accessor& accessor, Gltf
 
 }  // namespace
 
-GltfNumbers read_accessor(GltfFile& reader, int number) {
-  const tinygltf::Accessor& accessor = item_of(reader, reader.gltf.accessors, number, "accessor");
+GltfNumbers read_accessor(GltfFile& file, int number) {
+  const tinygltf::Accessor& accessor = item_of(file, file.gltf.accessors, number, "accessor");
   const std::size_t component = bytes_of_component(accessor.componentType);
   GltfNumbers numbers{numbers_of_type(accessor.type)};
   const std::string name = numbered("accessor", static_cast<std::size_t>(number));
-  if (component == 0 || numbers.width == 0) fail_gltf(reader, name + " has an unknown type");
-  if (accessor.count == 0) fail_gltf(reader, name + " has no elements");
-  if (accessor.count > reader.numbers_left / numbers.width) {
-    fail_gltf(reader, name + " has " + std::to_string(accessor.count) +
-                          " elements: with its copies the model has too many");
+  if (component == 0 || numbers.width == 0) fail_gltf(file, name + " has an unknown type");
+  if (accessor.count == 0) fail_gltf(file, name + " has no elements");
+  if (accessor.count > file.numbers_left / numbers.width) {
+    fail_gltf(file, name + " has " + std::to_string(accessor.count) +
+                        " elements: with its copies the model has too many");
   }
-  reader.numbers_left -= accessor.count * numbers.width;
+  file.numbers_left -= accessor.count * numbers.width;
   numbers.is_whole = is_whole(accessor.componentType) && !accessor.normalized;
   if (accessor.bufferView >= 0) {
     std::size_t stride = 0;
-    const unsigned char* from = elements_of(reader, accessor.bufferView, accessor.byteOffset,
+    const unsigned char* from = elements_of(file, accessor.bufferView, accessor.byteOffset,
                                             accessor.count, component * numbers.width, stride);
     numbers.values.reserve(accessor.count * numbers.width);
     for (std::size_t i = 0; i < accessor.count; ++i, from += stride) {
@@ -377,38 +376,36 @@ GltfNumbers read_accessor(GltfFile& reader, int number) {
       }
     }
   } else {
-    // Zeros, of which sparse ones may be others. A file of a few bytes may not claim gigabytes.
+    // Zeros, unless sparse elements replace them. A small file could claim gigabytes.
     constexpr std::size_t kMostZeros = std::size_t{1} << 22;
     if (accessor.count * numbers.width > kMostZeros) {
-      fail_gltf(reader, name + " has " + std::to_string(accessor.count) +
-                            " elements and no buffer; up to " +
-                            std::to_string(kMostZeros / numbers.width) + " would do");
+      fail_gltf(file, name + " has " + std::to_string(accessor.count) +
+                          " elements and no buffer; up to " +
+                          std::to_string(kMostZeros / numbers.width) + " would do");
     }
     numbers.values.resize(accessor.count * numbers.width);
   }
-  put_sparse(reader, accessor, numbers);
+  put_sparse(file, accessor, numbers);
   return numbers;
 }
 
-std::string view_bytes(const GltfFile& reader, int number) {
-  const std::size_t length =
-      item_of(reader, reader.gltf.bufferViews, number, "bufferView").byteLength;
+std::string view_bytes(const GltfFile& file, int number) {
+  const std::size_t length = item_of(file, file.gltf.bufferViews, number, "bufferView").byteLength;
   std::size_t stride = 0;
-  const unsigned char* bytes = elements_of(reader, number, 0, 1, length, stride);
+  const unsigned char* bytes = elements_of(file, number, 0, 1, length, stride);
   return {bytes, bytes + length};
 }
 
-std::optional<GltfNumbers> read_attribute(GltfFile& reader, const std::map<std::string, int>& of,
+std::optional<GltfNumbers> read_attribute(GltfFile& file, const std::map<std::string, int>& of,
                                           const std::string& name, std::size_t count,
                                           std::size_t least, std::size_t most) {
   const auto found = of.find(name);
   if (found == of.end()) return std::nullopt;
-  GltfNumbers numbers = read_accessor(reader, found->second);
+  GltfNumbers numbers = read_accessor(file, found->second);
   if (numbers.count() != count || numbers.width < least || numbers.width > most) {
-    fail_gltf(reader, name + " has " + std::to_string(numbers.count()) + " elements of " +
-                          std::to_string(numbers.width) + " numbers where " +
-                          std::to_string(count) + " of " + std::to_string(least) +
-                          " would be right");
+    fail_gltf(file, name + " has " + std::to_string(numbers.count()) + " elements of " +
+                        std::to_string(numbers.width) + " numbers where " + std::to_string(count) +
+                        " of " + std::to_string(least) + " would be right");
   }
   return numbers;
 }
@@ -423,17 +420,17 @@ double number_in(const tinygltf::Value& object, const char* key, double fallback
   return object.Get(key).GetNumberAsDouble();
 }
 
-int index_in(const tinygltf::Value& object, const char* key) {
-  const double number = number_in(object, key, -1.0);
-  return number >= 0.0 && number <= 1e9 ? static_cast<int>(number) : -1;
-}
-
 double number_in(const tinygltf::Value& object, const char* key, std::size_t i, double fallback) {
   if (!object.IsObject() || !object.Has(key) || !object.Get(key).IsArray()) return fallback;
   const tinygltf::Value& array = object.Get(key);
   if (i >= array.ArrayLen()) return fallback;
   const tinygltf::Value& item = array.Get(static_cast<int>(i));
   return item.IsNumber() ? item.GetNumberAsDouble() : fallback;
+}
+
+int index_in(const tinygltf::Value& object, const char* key) {
+  const double number = number_in(object, key, -1.0);
+  return number >= 0.0 && number <= 1e9 ? static_cast<int>(number) : -1;
 }
 
 }  // namespace softfocus

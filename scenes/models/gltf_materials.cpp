@@ -1,4 +1,4 @@
-#include "scenes/load/gltf_materials.h"
+#include "scenes/models/gltf_materials.h"
 
 #include <algorithm>
 #include <array>
@@ -22,54 +22,53 @@ bool is_there(const std::filesystem::path& file) {
 
 constexpr const char* kNoPicture = " is neither PNG nor JPEG, and left out";
 
-std::optional<Texture> read_picture(GltfFile& reader, int number) {
-  const tinygltf::Image& image = item_of(reader, reader.gltf.images, number, "image");
+std::optional<Texture> read_picture(GltfFile& file, int number) {
+  const tinygltf::Image& image = item_of(file, file.gltf.images, number, "image");
   const std::string what = numbered("image", static_cast<std::size_t>(number));
-  std::string bytes = image.bufferView >= 0 ? view_bytes(reader, image.bufferView)
+  std::string bytes = image.bufferView >= 0 ? view_bytes(file, image.bufferView)
                                             : std::string{image.image.begin(), image.image.end()};
-  std::string name = reader.path.string() + ": " + what;
+  std::string name = file.path.string() + ": " + what;
   if (bytes.empty()) {
     // tinygltf leaves out what it does not know of data.
     const bool is_data = image.uri.starts_with("data:");
     if (image.uri.empty() || is_data) {
-      warn_gltf(reader, what + (is_data ? kNoPicture : " is missing"));
+      warn_gltf(file, what + (is_data ? kNoPicture : " is missing"));
       return std::nullopt;
     }
-    std::filesystem::path file = reader.path.parent_path() / without_percents(image.uri);
-    if (!is_there(file)) file = reader.path.parent_path() / image.uri;
-    if (!is_there(file)) {
-      warn_gltf(reader, "texture " + shortened(image.uri) + " is missing");
+    std::filesystem::path path = file.path.parent_path() / without_percents(image.uri);
+    if (!is_there(path)) path = file.path.parent_path() / image.uri;
+    if (!is_there(path)) {
+      warn_gltf(file, "texture " + shortened(image.uri) + " is missing");
       return std::nullopt;
     }
-    bytes = read_file_bytes(file, kMaxTextureBytes);
-    name = file.string();
-    reader.model.files.push_back(std::move(file));
+    bytes = read_file_bytes(path, kMaxTextureBytes);
+    name = path.string();
+    file.model.files.push_back(std::move(path));
   }
   const bool is_png = bytes.starts_with("\x89PNG"), is_jpeg = bytes.starts_with("\xFF\xD8");
   if (!is_png && !is_jpeg) {
-    warn_gltf(reader, what + kNoPicture);
+    warn_gltf(file, what + kNoPicture);
     return std::nullopt;
   }
   return texture_of_bytes(bytes, name);
 }
 
-std::optional<std::uint32_t> texture_of(GltfFile& reader, int image) {
-  const auto [entry, is_new] = reader.texture_of_image.try_emplace(image);
+std::optional<std::uint32_t> texture_of(GltfFile& file, int image) {
+  const auto [entry, is_new] = file.texture_of_image.try_emplace(image);
   if (is_new) {
-    if (std::optional<Texture> read = read_picture(reader, image)) {
-      entry->second = static_cast<std::uint32_t>(reader.model.textures.size());
-      reader.model.textures.push_back(std::move(*read));
+    if (std::optional<Texture> read = read_picture(file, image)) {
+      entry->second = static_cast<std::uint32_t>(file.model.textures.size());
+      file.model.textures.push_back(std::move(*read));
     }
   }
   return entry->second;
 }
 
 // The picture of a texture, or -1, with a warning.
-int image_of(GltfFile& reader, int texture) {
-  const int image = item_of(reader, reader.gltf.textures, texture, "texture").source;
+int image_of(GltfFile& file, int texture) {
+  const int image = item_of(file, file.gltf.textures, texture, "texture").source;
   if (image < 0) {
-    warn_gltf(reader,
-              numbered("texture", static_cast<std::size_t>(texture)) + " has no PNG or JPEG");
+    warn_gltf(file, numbered("texture", static_cast<std::size_t>(texture)) + " has no PNG or JPEG");
   }
   return image;
 }
@@ -81,11 +80,11 @@ Wrap wrap_of(int mode) {
                             : Wrap::repeat;
 }
 
-Sampler sampler_of(const GltfFile& reader, int texture) {
+Sampler sampler_of(const GltfFile& file, int texture) {
   Sampler sampler{Filter::trilinear, Wrap::repeat, Wrap::repeat};
-  const int number = item_of(reader, reader.gltf.textures, texture, "texture").sampler;
+  const int number = item_of(file, file.gltf.textures, texture, "texture").sampler;
   if (number < 0) return sampler;
-  const tinygltf::Sampler& of = item_of(reader, reader.gltf.samplers, number, "sampler");
+  const tinygltf::Sampler& of = item_of(file, file.gltf.samplers, number, "sampler");
   sampler.wrap_u = wrap_of(of.wrapS);
   sampler.wrap_v = wrap_of(of.wrapT);
   constexpr int kNearest = 9728;
@@ -108,11 +107,11 @@ std::array<double, 2> means_of(const Image& picture) {
 }
 
 // Of an image by its number, once; 1 if there is none.
-std::array<double, 2> means_of(GltfFile& reader, int image) {
+std::array<double, 2> means_of(GltfFile& file, int image) {
   if (image < 0) return {1.0, 1.0};
-  const auto [entry, is_new] = reader.means_of_image.try_emplace(image, std::array{1.0, 1.0});
+  const auto [entry, is_new] = file.means_of_image.try_emplace(image, std::array{1.0, 1.0});
   if (is_new) {
-    if (const auto read = read_picture(reader, image)) entry->second = means_of(read->levels[0]);
+    if (const auto read = read_picture(file, image)) entry->second = means_of(read->levels[0]);
   }
   return entry->second;
 }
@@ -147,29 +146,28 @@ Texture mask_of(const Image& picture, double factor, double cutoff) {
   return texture;
 }
 
-void set_opacity(GltfFile& reader, const tinygltf::Material& from, int image, Material& material) {
+void set_opacity(GltfFile& file, const tinygltf::Material& from, int image, Material& material) {
   if (from.alphaMode != "BLEND" && from.alphaMode != "MASK") return;
   const double factor = from.pbrMetallicRoughness.baseColorFactor[3];
   const bool blends = from.alphaMode == "BLEND";
   if (blends) material.opacity = static_cast<float>(std::clamp(factor, 0.0, 1.0));
-  const std::optional<std::uint32_t> texture =
-      image >= 0 ? texture_of(reader, image) : std::nullopt;
-  const bool has_picture = texture && has_alpha(reader.model.textures[*texture].levels[0]);
+  const std::optional<std::uint32_t> texture = image >= 0 ? texture_of(file, image) : std::nullopt;
+  const bool has_picture = texture && has_alpha(file.model.textures[*texture].levels[0]);
   if (!has_picture) {
     if (!blends && factor < from.alphaCutoff) material.opacity = 0.0f;
     return;
   }
-  const auto [entry, is_new] = reader.opacity_of_image.try_emplace(
+  const auto [entry, is_new] = file.opacity_of_image.try_emplace(
       {image, blends ? 0.0 : factor, blends ? -1.0 : from.alphaCutoff},
-      static_cast<std::uint32_t>(reader.model.textures.size()));
+      static_cast<std::uint32_t>(file.model.textures.size()));
   if (is_new) {
-    const Image& picture = reader.model.textures[*texture].levels[0];
-    reader.model.textures.push_back(blends ? make_opacity_texture(picture)
-                                           : mask_of(picture, factor, from.alphaCutoff));
+    const Image& picture = file.model.textures[*texture].levels[0];
+    file.model.textures.push_back(blends ? make_opacity_texture(picture)
+                                         : mask_of(picture, factor, from.alphaCutoff));
   }
   material.opacity_texture = entry->second;
   material.opacity_sampler = material.sampler;
-  material.cut_out = is_cut_out(reader.model.textures[entry->second]);
+  material.cut_out = is_cut_out(file.model.textures[entry->second]);
 }
 
 // As much of a factor as is there, from 0 to 1.
@@ -185,7 +183,7 @@ double largest(glm::dvec3 v) { return std::max({v.x, v.y, v.z}); }
 
 }  // namespace
 
-ShownColour shown_colour(GltfFile& reader, const tinygltf::Material& from) {
+ShownColour shown_colour(GltfFile& file, const tinygltf::Material& from) {
   constexpr double kBlack = 0.01;
   const tinygltf::TextureInfo& base = from.pbrMetallicRoughness.baseColorTexture;
   const tinygltf::TextureInfo& light = from.emissiveTexture;
@@ -195,12 +193,13 @@ ShownColour shown_colour(GltfFile& reader, const tinygltf::Material& from) {
     return {emitted, light.index, light.texCoord, &light.extensions, true};
   }
   if (largest(emitted) > 0.0) {
-    warn_gltf(reader, "the light that material " + from.name + " gives off is left out");
+    warn_gltf(file, "material " + (from.name.empty() ? "without a name" : from.name) +
+                        ": the light that it gives off is left out");
   }
   return {colour, base.index, base.texCoord, &base.extensions};
 }
 
-Material material_of(GltfFile& reader, const tinygltf::Material& from) {
+Material material_of(GltfFile& file, const tinygltf::Material& from) {
   const tinygltf::PbrMetallicRoughness& pbr = from.pbrMetallicRoughness;
   Material material;
   material.name = from.name;
@@ -210,18 +209,18 @@ Material material_of(GltfFile& reader, const tinygltf::Material& from) {
   double roughness = std::clamp(pbr.roughnessFactor, 0.0, 1.0);
   if (pbr.metallicRoughnessTexture.index >= 0) {
     const std::array<double, 2> means =
-        means_of(reader, image_of(reader, pbr.metallicRoughnessTexture.index));
+        means_of(file, image_of(file, pbr.metallicRoughnessTexture.index));
     roughness *= means[0];
     metallic *= means[1];
   }
-  const ShownColour shown = shown_colour(reader, from);
+  const ShownColour shown = shown_colour(file, from);
   const glm::dvec3 base = shown.factor;
   if (shown.shines) material.lit = false;
   int image = -1;
   if (shown.texture >= 0) {
-    image = image_of(reader, shown.texture);
-    if (image >= 0) material.texture = texture_of(reader, image);
-    material.sampler = sampler_of(reader, shown.texture);
+    image = image_of(file, shown.texture);
+    if (image >= 0) material.texture = texture_of(file, image);
+    material.sampler = sampler_of(file, shown.texture);
   }
   material.diffuse = glm::vec3{material.lit ? base * (1.0 - metallic / 2.0) : base};
   material.ambient = material.diffuse;
@@ -229,7 +228,7 @@ Material material_of(GltfFile& reader, const tinygltf::Material& from) {
   const double exponent = std::clamp(2.0 / std::max(square * square, 1e-6) - 2.0, 1.0, 1024.0);
   material.shininess = static_cast<int>(exponent + 0.5);
   const glm::dvec3 seen =
-      material.texture ? base * mean_colour(reader.model.textures[*material.texture]) : base;
+      material.texture ? base * mean_colour(file.model.textures[*material.texture]) : base;
   const glm::dvec3 mirrored = glm::dvec3{0.04 * (1.0 - metallic)} + seen * metallic;
   for (int i = 0; i < 3; ++i) {
     const double lobe = std::min(mirrored[i] * (exponent + 8.0) / 8.0, 1.0);
@@ -237,8 +236,8 @@ Material material_of(GltfFile& reader, const tinygltf::Material& from) {
   }
   // Alpha is the base colour's, also of what gives off light.
   const int base_texture = pbr.baseColorTexture.index;
-  const int of_base = base_texture >= 0 ? image_of(reader, base_texture) : -1;
-  set_opacity(reader, from, of_base, material);
+  const int of_base = base_texture >= 0 ? image_of(file, base_texture) : -1;
+  set_opacity(file, from, of_base, material);
   return material;
 }
 

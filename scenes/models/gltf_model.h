@@ -3,19 +3,17 @@
 
 #include <filesystem>
 
-#include "scenes/load/model.h"
+#include "scenes/models/model.h"
 
 namespace softfocus {
 
-/// Reads the file's scene: meshes where its nodes put them, each copy by itself, joined by
-/// material; of skins and morph targets the pose that the file is in. With the first perspective
-/// camera and the lights (KHR_lights_punctual).
+/// Reads the file's scene: meshes where its nodes put them, joined by material; skins and morph
+/// targets in the pose of the file; the first perspective camera; the lights of
+/// KHR_lights_punctual.
 ///
 /// A metallic-roughness material becomes Blinn-Phong's, with m metallic and r roughness, each times
 /// the mean of its texture:
-///   diffuse, ambient   base colour * (1 - m / 2): what a metal mirrors is not there to be seen,
-///   and
-///                      half of it stands in
+///   diffuse, ambient   base colour * (1 - m / 2): half stands in for what a metal would mirror
 ///   shininess n        2 / r^4 - 2, from 1 to 1024
 ///   specular           (1 - r) min(1, (n + 8) / 8 * (0.04 (1 - m) + mean base colour * m))
 ///   alpha              of BLEND opacity, of MASK a cut-out
@@ -31,6 +29,6 @@ namespace softfocus {
 /// the middle is subtracted. Throws SceneError for what is no glTF 2.0, an accessor that goes past
 /// its buffer, a position that is none, a picture that cannot be decoded, a file without triangles,
 /// and one that needs an extension that is not understood.
-Model load_gltf_model(const std::filesystem::path& file);
+Model load_gltf_model(const std::filesystem::path& path);
 
 }  // namespace softfocus

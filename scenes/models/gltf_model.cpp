@@ -1,0 +1,232 @@
+#include "scenes/models/gltf_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/mat4x4.hpp>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "raster/numbers/vector_math.h"
+#include "scenes/models/gltf_materials.h"
+#include "scenes/models/gltf_meshes.h"
+
+namespace softfocus {
+namespace {
+
+// Of nodes, one below the other.
+constexpr int kMostDepth = 1000;
+
+glm::dmat4 own_matrix(const tinygltf::Node& node) {
+  glm::dmat4 m{1.0};
+  if (node.matrix.size() == 16) {
+    for (std::size_t i = 0; i < 16; ++i) {
+      m[static_cast<int>(i / 4)][static_cast<int>(i % 4)] = node.matrix[i];
+    }
+    return m;
+  }
+  if (node.rotation.size() == 4) {
+    double x = node.rotation[0], y = node.rotation[1], z = node.rotation[2], w = node.rotation[3];
+    const double length = std::sqrt(x * x + y * y + z * z + w * w);
+    if (length > 0.0) {
+      x /= length;
+      y /= length;
+      z /= length;
+      w /= length;
+      m[0] = {1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + z * w), 2.0 * (x * z - y * w), 0.0};
+      m[1] = {2.0 * (x * y - z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + x * w), 0.0};
+      m[2] = {2.0 * (x * z + y * w), 2.0 * (y * z - x * w), 1.0 - 2.0 * (x * x + y * y), 0.0};
+    }
+  }
+  for (int i = 0; i < 3; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (node.scale.size() == 3) m[i] = m[i] * node.scale[at];
+    if (node.translation.size() == 3) m[3][i] = node.translation[at];
+  }
+  return m;
+}
+
+struct PlacedNode {
+  int number;
+  glm::dmat4 to_world;
+};
+
+// The nodes of the file's scene, parents first.
+std::vector<PlacedNode> placed_nodes(const GltfFile& file) {
+  const tinygltf::Model& gltf = file.gltf;
+  struct Open {
+    int node, depth;
+    glm::dmat4 parent;
+  };
+  std::vector<Open> open;
+  if (!gltf.scenes.empty()) {
+    const tinygltf::Scene& scene =
+        item_of(file, gltf.scenes, std::max(gltf.defaultScene, 0), "scene");
+    for (const int node : scene.nodes) open.push_back({node, 0, glm::dmat4{1.0}});
+  } else {
+    std::set<int> children;
+    for (const tinygltf::Node& node : gltf.nodes) {
+      children.insert(node.children.begin(), node.children.end());
+    }
+    for (int i = 0; i < static_cast<int>(gltf.nodes.size()); ++i) {
+      if (!children.contains(i)) open.push_back({i, 0, glm::dmat4{1.0}});
+    }
+  }
+  std::reverse(open.begin(), open.end());
+  std::vector<bool> is_seen(gltf.nodes.size());
+  std::vector<PlacedNode> placed;
+  while (!open.empty()) {
+    const Open next = open.back();
+    open.pop_back();
+    const tinygltf::Node& node = item_of(file, gltf.nodes, next.node, "node");
+    const auto number = static_cast<std::size_t>(next.node);
+    if (is_seen[number]) {
+      fail_gltf(file, numbered("node", number) +
+                          " is in two places, or below itself; a tree would be right");
+    }
+    if (next.depth > kMostDepth) {
+      fail_gltf(file, numbered("node", number) + " lies below more than " +
+                          std::to_string(kMostDepth) + " others");
+    }
+    is_seen[number] = true;
+    placed.push_back({next.node, multiply(next.parent, own_matrix(node))});
+    for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
+      open.push_back({*child, next.depth + 1, placed.back().to_world});
+    }
+  }
+  return placed;
+}
+
+void add_camera(GltfFile& file, const tinygltf::Node& node, const glm::dmat4& to_world) {
+  const tinygltf::Camera& from = item_of(file, file.gltf.cameras, node.camera, "camera");
+  if (file.model.camera) return;
+  const double fov = from.perspective.yfov * 57.295779513082320877;
+  if (from.type != "perspective") {
+    warn_gltf(file, "a camera that is not perspective is left out");
+    return;
+  }
+  const glm::dvec3 place_of_eye{to_world[3]};
+  const glm::dvec3 back = normalize(glm::dvec3{to_world[2]}),
+                   up = normalize(glm::dvec3{to_world[1]});
+  const glm::dvec3 right = cross(up, back);
+  const bool can_look = std::max({std::fabs(place_of_eye.x), std::fabs(place_of_eye.y),
+                                  std::fabs(place_of_eye.z)}) <= kLargestCoordinate &&
+                        dot(right, right) > 1e-6;
+  if (!(fov > 0.1 && fov < 170.0) || !can_look) {
+    warn_gltf(file, "a camera of " + std::to_string(fov) +
+                        " degrees, or without a direction, is left out");
+    return;
+  }
+  Camera camera;
+  camera.position = place_of_eye - file.model.origin;
+  camera.target = camera.position - back;
+  camera.up = up;
+  camera.fov_y_degrees = fov;
+  file.model.camera = camera;
+}
+
+void add_light(GltfFile& file, const tinygltf::Node& node, const glm::dmat4& to_world,
+               glm::dvec3 middle, double size) {
+  const tinygltf::Value* named = extension(node.extensions, "KHR_lights_punctual");
+  const int number = named != nullptr ? index_in(*named, "light") : -1;
+  if (number < 0 || static_cast<std::size_t>(number) >= file.gltf.lights.size()) return;
+  const tinygltf::Light& from = file.gltf.lights[static_cast<std::size_t>(number)];
+  Light light;
+  double throws = from.intensity;
+  if (from.type == "directional") {
+    light.position_or_direction = glm::vec3{normalize(glm::dvec3{to_world[2]})};
+    if (dot(light.position_or_direction, light.position_or_direction) == 0.0f) {
+      warn_gltf(file, "a light without a direction is left out");
+      return;
+    }
+  } else {
+    if (from.type == "spot") warn_gltf(file, "a spot light shines in all directions");
+    light.kind = LightKind::point;
+    const glm::dvec3 at = glm::dvec3{to_world[3]} - file.model.origin;
+    light.position_or_direction = glm::vec3{at};
+    // Within the model it counts as at its half size.
+    const glm::dvec3 way = at - middle;
+    throws /= std::max({dot(way, way), size * size / 16.0, 1e-12});
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double colour = i < from.color.size() ? from.color[i] : 1.0;
+    light.colour[static_cast<int>(i)] = static_cast<float>(std::max(colour * throws, 0.0));
+  }
+  file.model.lights.push_back(light);
+}
+
+void level_lights(GltfFile& file) {
+  Model& model = file.model;
+  float most = 0.0f;
+  for (const Light& light : model.lights) {
+    most = std::max({most, light.colour.x, light.colour.y, light.colour.z});
+  }
+  if (!(most > 0.0f && most < std::numeric_limits<float>::infinity())) {
+    model.lights.clear();
+    return;
+  }
+  for (Light& light : model.lights) light.colour = light.colour / most;
+  // As many as a scene file may have, the brightest.
+  constexpr std::size_t kMostGltfLights = 64;
+  const auto brightness = [](const Light& light) {
+    return light.colour.x + light.colour.y + light.colour.z;
+  };
+  if (model.lights.size() > kMostGltfLights) {
+    warn_gltf(file, "of " + std::to_string(model.lights.size()) + " lights the brightest " +
+                        std::to_string(kMostGltfLights) + " are there");
+    std::stable_sort(model.lights.begin(), model.lights.end(),
+                     [&](const Light& a, const Light& b) { return brightness(a) > brightness(b); });
+    model.lights.resize(kMostGltfLights);
+  }
+}
+
+}  // namespace
+
+Model load_gltf_model(const std::filesystem::path& path) {
+  GltfFile file = open_gltf(path);
+  const tinygltf::Model& gltf = file.gltf;
+  const std::vector<PlacedNode> placed = placed_nodes(file);
+  std::vector<const glm::dmat4*> worlds(gltf.nodes.size());
+  for (const PlacedNode& at : placed) worlds[static_cast<std::size_t>(at.number)] = &at.to_world;
+  GltfParts grown;
+  for (const PlacedNode& at : placed) {
+    const tinygltf::Node& node = gltf.nodes[static_cast<std::size_t>(at.number)];
+    if (node.mesh >= 0) add_mesh(file, node, at.to_world, worlds, grown);
+  }
+  std::vector<GltfPart>& parts = grown.parts;
+  // Pictures of the materials that are used alone are read; the last is for none.
+  file.model.materials.resize(gltf.materials.size());
+  file.model.materials.push_back(material_of(file, tinygltf::Material{}));
+  std::vector<bool> is_read(file.model.materials.size());
+  is_read.back() = true;
+  for (const GltfPart& part : parts) {
+    if (is_read[part.material]) continue;
+    is_read[part.material] = true;
+    file.model.materials[part.material] = material_of(file, gltf.materials[part.material]);
+  }
+  parts.erase(std::remove_if(parts.begin(), parts.end(),
+                             [](const GltfPart& part) { return part.mesh.indices.empty(); }),
+              parts.end());
+  if (parts.empty()) fail_gltf(file, "has no triangles in its scene; a mesh would be right");
+  finish_parts(file, parts);
+  glm::dvec3 low{std::numeric_limits<double>::infinity()};
+  glm::dvec3 high = -low;
+  for (const Model::Part& part : file.model.parts) {
+    for (const glm::vec3& p : part.mesh.positions) {
+      low = glm::min(low, glm::dvec3{p});
+      high = glm::max(high, glm::dvec3{p});
+    }
+  }
+  const glm::dvec3 middle = (low + high) * 0.5, extent = high - low;
+  const double size = std::sqrt(dot(extent, extent));
+  for (const PlacedNode& at : placed) {
+    const tinygltf::Node& node = gltf.nodes[static_cast<std::size_t>(at.number)];
+    if (node.camera >= 0) add_camera(file, node, at.to_world);
+    add_light(file, node, at.to_world, middle, size);
+  }
+  level_lights(file);
+  if (!gltf.animations.empty()) warn_gltf(file, "animations are left out");
+  return std::move(file.model);
+}
+
+}  // namespace softfocus
