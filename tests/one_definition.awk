@@ -13,7 +13,7 @@ function unit_of(file) {
   if (file ~ /^tools\/(gl|crosscheck)\//) return "tools/drivers"
   if (file ~ /^tools\/(files|pictures)\//) return "tools/files"
   if (file ~ /^tools\/(refocus|effects)\//) return "tools/refocus"
-  if (match(file, /^(raster\/shaders\/glsl|dof\/(auto|c|fixed|measure)|scenes\/(files|load))\//) ||
+  if (match(file, /^(raster\/shaders\/glsl|dof\/(auto|c|fixed|measure)|scenes\/(files|load|models))\//) ||
       match(file, /^tools\/(golden|stress|page)\//)) {
     return substr(file, 1, RLENGTH - 1)
   }
