@@ -3,6 +3,7 @@
 // World units are metres, y points up, the coordinate system is right-handed.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <glm/vec2.hpp>
@@ -62,6 +63,9 @@ enum class LightKind : std::uint8_t { directional, point };
 
 /// How a light's shadows are made (scenes/shadows).
 enum class ShadowKind : std::uint8_t { none, projected, volumes, map };
+
+/// Of a scene.
+inline constexpr std::size_t kMostLights = 64;
 
 /// Lights with shadows: a bit each in a stencil of 8.
 inline constexpr int kMostShadowLights = 8;

@@ -228,12 +228,11 @@ Scene read_scene_text(std::string_view text, const std::filesystem::path& file, 
 
   scene.light_points =
       static_cast<int>(read_number(top, parameter::kLightPoints, scene.light_points));
-  constexpr std::size_t kMaxLights = 64;
   std::vector<Section> lights = read_sections(top, "light");
-  if (lights.size() > kMaxLights) {
+  if (lights.size() > kMostLights) {
     fail_at(top, "light",
             "has " + std::to_string(lights.size()) + " lights; up to " +
-                std::to_string(kMaxLights) + " would do");
+                std::to_string(kMostLights) + " would do");
   }
   int with_shadows = 0;
   for (Section& light : lights) {

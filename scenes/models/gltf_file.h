@@ -97,6 +97,9 @@ int index_in(const tinygltf::Value& object, const char* key);
 /// A URI's text: %20 is a blank.
 std::string without_percents(std::string_view uri);
 
+/// Of a radian.
+inline constexpr double kDegrees = 57.295779513082320877;
+
 inline constexpr const char* kDraco = "KHR_draco_mesh_compression";
 
 /// The complaint about geometry that an extension packs.

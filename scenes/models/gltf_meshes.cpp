@@ -38,7 +38,6 @@ UvTransform uv_transform(const ShownColour& shown) {
     made.offset[axis] = number_in(*transform, "offset", i, 0.0);
     made.scale[axis] = number_in(*transform, "scale", i, 1.0);
   }
-  constexpr double kDegrees = 57.295779513082320877;
   const double degrees = number_in(*transform, "rotation", 0.0) * kDegrees;
   made.sine = exact_math::sin_degrees(degrees);
   made.cosine = exact_math::sin_degrees(degrees + 90.0);
@@ -368,7 +367,7 @@ void add_mesh(GltfFile& file, const tinygltf::Node& node, const glm::dmat4& to_w
   }
 }
 
-void finish_parts(GltfFile& file, std::vector<GltfPart>& parts) {
+ModelBox finish_parts(GltfFile& file, std::vector<GltfPart>& parts) {
   constexpr double kFar = std::numeric_limits<double>::infinity();
   glm::dvec3 low{kFar}, high{-kFar};
   for (const GltfPart& part : parts) {
@@ -391,6 +390,7 @@ void finish_parts(GltfFile& file, std::vector<GltfPart>& parts) {
     part.positions = {};
     model.parts.push_back({std::move(part.mesh), part.material});
   }
+  return {low - model.origin, high - model.origin};
 }
 
 }  // namespace softfocus

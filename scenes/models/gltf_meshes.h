@@ -31,7 +31,11 @@ struct GltfParts {
 void add_mesh(GltfFile& file, const tinygltf::Node& node, const glm::dmat4& to_world,
               std::span<const glm::dmat4* const> worlds, GltfParts& parts);
 
-/// Puts the parts into the model, without its middle if that is far.
-void finish_parts(GltfFile& file, std::vector<GltfPart>& parts);
+struct ModelBox {
+  glm::dvec3 low, high;
+};
+
+/// Puts the parts into the model, less its middle if that is far. Returns the box that holds them.
+ModelBox finish_parts(GltfFile& file, std::vector<GltfPart>& parts);
 
 }  // namespace softfocus

@@ -100,28 +100,29 @@ std::vector<PlacedNode> placed_nodes(const GltfFile& file) {
 void add_camera(GltfFile& file, const tinygltf::Node& node, const glm::dmat4& to_world) {
   const tinygltf::Camera& from = item_of(file, file.gltf.cameras, node.camera, "camera");
   if (file.model.camera) return;
-  const double fov = from.perspective.yfov * 57.295779513082320877;
   if (from.type != "perspective") {
     warn_gltf(file, "a camera that is not perspective is left out");
     return;
   }
-  const glm::dvec3 place_of_eye{to_world[3]};
-  const glm::dvec3 back = normalize(glm::dvec3{to_world[2]}),
-                   up = normalize(glm::dvec3{to_world[1]});
+  const double fov_degrees = from.perspective.yfov * kDegrees;
+  if (!(fov_degrees > 0.1 && fov_degrees < 170.0)) {
+    warn_gltf(file, "a camera of " + std::to_string(fov_degrees) + " degrees is left out");
+    return;
+  }
+  const glm::dvec3 eye{to_world[3]};
+  const glm::dvec3 back = normalize(glm::dvec3{to_world[2]});
+  const glm::dvec3 up = normalize(glm::dvec3{to_world[1]});
   const glm::dvec3 right = cross(up, back);
-  const bool can_look = std::max({std::fabs(place_of_eye.x), std::fabs(place_of_eye.y),
-                                  std::fabs(place_of_eye.z)}) <= kLargestCoordinate &&
-                        dot(right, right) > 1e-6;
-  if (!(fov > 0.1 && fov < 170.0) || !can_look) {
-    warn_gltf(file, "a camera of " + std::to_string(fov) +
-                        " degrees, or without a direction, is left out");
+  const double away = std::max({std::fabs(eye.x), std::fabs(eye.y), std::fabs(eye.z)});
+  if (!(away <= kLargestCoordinate) || !(dot(right, right) > 1e-6)) {
+    warn_gltf(file, "a camera without a place or a direction is left out");
     return;
   }
   Camera camera;
-  camera.position = place_of_eye - file.model.origin;
+  camera.position = eye - file.model.origin;
   camera.target = camera.position - back;
   camera.up = up;
-  camera.fov_y_degrees = fov;
+  camera.fov_y_degrees = fov_degrees;
   file.model.camera = camera;
 }
 
@@ -161,22 +162,22 @@ void level_lights(GltfFile& file) {
   for (const Light& light : model.lights) {
     most = std::max({most, light.colour.x, light.colour.y, light.colour.z});
   }
+  if (model.lights.empty()) return;
   if (!(most > 0.0f && most < std::numeric_limits<float>::infinity())) {
+    warn_gltf(file, "lights that give nothing, or no number, are left out");
     model.lights.clear();
     return;
   }
   for (Light& light : model.lights) light.colour = light.colour / most;
-  // As many as a scene file may have, the brightest.
-  constexpr std::size_t kMostGltfLights = 64;
   const auto brightness = [](const Light& light) {
     return light.colour.x + light.colour.y + light.colour.z;
   };
-  if (model.lights.size() > kMostGltfLights) {
+  if (model.lights.size() > kMostLights) {
     warn_gltf(file, "of " + std::to_string(model.lights.size()) + " lights the brightest " +
-                        std::to_string(kMostGltfLights) + " are there");
+                        std::to_string(kMostLights) + " are there");
     std::stable_sort(model.lights.begin(), model.lights.end(),
                      [&](const Light& a, const Light& b) { return brightness(a) > brightness(b); });
-    model.lights.resize(kMostGltfLights);
+    model.lights.resize(kMostLights);
   }
 }
 
@@ -208,15 +209,7 @@ Model load_gltf_model(const std::filesystem::path& path) {
                              [](const GltfPart& part) { return part.mesh.indices.empty(); }),
               parts.end());
   if (parts.empty()) fail_gltf(file, "has no triangles in its scene; a mesh would be right");
-  finish_parts(file, parts);
-  glm::dvec3 low{std::numeric_limits<double>::infinity()};
-  glm::dvec3 high = -low;
-  for (const Model::Part& part : file.model.parts) {
-    for (const glm::vec3& p : part.mesh.positions) {
-      low = glm::min(low, glm::dvec3{p});
-      high = glm::max(high, glm::dvec3{p});
-    }
-  }
+  const auto [low, high] = finish_parts(file, parts);
   const glm::dvec3 middle = (low + high) * 0.5, extent = high - low;
   const double size = std::sqrt(dot(extent, extent));
   for (const PlacedNode& at : placed) {

@@ -42,9 +42,10 @@ glm::dvec2 along_axes(const LightGrid& grid, glm::dvec3 p) {
 }
 
 // A polygon as a side of the cube sees it: cut by its pyramid's four planes, then divided. Points
-// are (across, across, ahead).
+// are (across, across, ahead). An outline has 8 corners, each plane adds one, and rounding may add
+// another where corners are there twice.
 struct SidePolygon {
-  std::array<glm::dvec3, 12> corners;
+  std::array<glm::dvec3, 16> corners;
   std::size_t count = 0;
 };
 

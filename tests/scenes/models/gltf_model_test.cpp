@@ -275,8 +275,21 @@ TEST_CASE(
   const Model model = load(flat);
   CHECK(!model.camera);
   CHECK(model.lights.empty());
-  CHECK(warns(model, "without a direction, is left out"));
+  CHECK(warns(model, "a camera without a place or a direction is left out"));
   CHECK(warns(model, "a light without a direction is left out"));
+  Gltf wide = triangle();
+  wide.node("\"mesh\":0");
+  wide.node("\"camera\":0,\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}");
+  wide.more =
+      ",\"cameras\":[{\"type\":\"perspective\",\"perspective\":{\"yfov\":3,\"znear\":0.1}}],"
+      "\"extensions\":{\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"spot\",\"spot\":{},"
+      "\"spot\":{},\"intensity\":0}]}}";
+  const Model dark = load(wide);
+  CHECK(!dark.camera);
+  CHECK(warns(dark, "a camera of 171.887339 degrees is left out"));
+  CHECK(warns(dark, "a spot light shines in all directions"));
+  CHECK(warns(dark, "lights that give nothing"));
+  CHECK(dark.lights.empty());
 }
 
 TEST_CASE("a model far from the origin for its size comes back to it") {
