@@ -147,8 +147,10 @@ struct ImpostorBudget {
   double milliseconds = 0.0;  ///< predicted, a frame: it raises the tolerance; 0: any
 };
 
-/// A mesh put into the world: scaled, then turned about x, y and z in that order,
-/// then moved.
+struct NodeMotion;  // models/node_motion.h
+
+/// A mesh put into the world: where its model moves it, then scaled, then turned about x, y and z
+/// in that order, then moved.
 struct Object {
   std::uint32_t mesh = 0;
   std::uint32_t material = 0;
@@ -164,6 +166,7 @@ struct Object {
   double sway_phase = 0.0;
   ImpostorUse impostor = ImpostorUse::never;
   std::uint32_t model = 0;  ///< parts of one model, one after the other, have one number; 0: alone
+  std::shared_ptr<const NodeMotion> motion{};  ///< within its model; null: it stands still there
 };
 
 /// Whether it stands elsewhere at another frame.
@@ -172,7 +175,8 @@ inline bool moves(const Camera& camera) {
          camera.target_keys[0].size() > 1;
 }
 inline bool moves(const Object& object) {
-  return object.spin_degrees_per_frame != glm::dvec3{0.0} || object.sway != glm::dvec3{0.0};
+  return object.motion != nullptr || object.spin_degrees_per_frame != glm::dvec3{0.0} ||
+         object.sway != glm::dvec3{0.0};
 }
 
 /// As many halves can be added in binary64 without a rounding (draw/light_points.h).

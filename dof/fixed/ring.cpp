@@ -12,7 +12,7 @@ bool within_limits(const Settings& settings) {
 }
 
 bool formats_are_known(const Settings& settings) {
-  if (settings.colour > SOFTFOCUS_FIXED_RGBA16F) return false;
+  if (settings.colour > SOFTFOCUS_FIXED_RGB565_SWAPPED) return false;
   return settings.depth <= SOFTFOCUS_FIXED_DEPTH16 ||
          (settings.depth == SOFTFOCUS_FIXED_DEPTH_IN_ALPHA &&
           settings.colour == SOFTFOCUS_FIXED_RGBA16F);

@@ -95,9 +95,11 @@ int softfocus_fixed_table_half(const softfocus_fixed_lens* lens,
 typedef enum softfocus_fixed_colour {
   SOFTFOCUS_FIXED_RGBA8 = 0,  /* bytes r, g, b, a; a goes through */
   SOFTFOCUS_FIXED_RGB565 = 1, /* uint16_t, red in the high bits */
-  SOFTFOCUS_FIXED_RGBA16F = 2 /* 4 halves as uint16_t; a goes through. Colours that are
-                                 infinite count as 65504 of their sign, NaN as 0. For
-                                 softfocus_fixed_begin_half() */
+  SOFTFOCUS_FIXED_RGBA16F = 2, /* 4 halves as uint16_t; a goes through. Colours that are
+                                  infinite count as 65504 of their sign, NaN as 0. For
+                                  softfocus_fixed_begin_half() */
+  SOFTFOCUS_FIXED_RGB565_SWAPPED = 3 /* RGB565 with its two bytes swapped, as displays on
+                                        SPI want it: LVGL's RGB565_SWAPPED */
 } softfocus_fixed_colour;
 
 typedef enum softfocus_fixed_depth {
@@ -115,7 +117,7 @@ typedef struct softfocus_fixed_settings {
 } softfocus_fixed_settings;
 
 /* Bytes of memory that a stream needs: for 8-bit colour, and for RGBA16F. A constant where
- * its arguments are. `has_alpha` is 1 for RGBA8, 0 for RGB565; `depth_bytes` 1 or 2. */
+ * its arguments are. `has_alpha` is 1 for RGBA8, 0 for either RGB565; `depth_bytes` 1 or 2. */
 #define SOFTFOCUS_FIXED_ROUND_UP(bytes) (((bytes) + 3u) & ~(size_t)3u)
 #define SOFTFOCUS_FIXED_MEMORY(width, reach, has_alpha, depth_bytes) \
   (SOFTFOCUS_FIXED_ROUND_UP((size_t)(width) * (2u * (reach) + 1u) *  \
@@ -139,7 +141,7 @@ typedef struct softfocus_fixed_stream {
   void (*write_row)(struct softfocus_fixed_stream*, void*);
 } softfocus_fixed_stream;
 
-/* Makes a stream ready for a picture of RGBA8 or RGB565. `bytes` of memory, aligned to 4 bytes,
+/* Makes a stream ready for a picture of 8-bit colour. `bytes` of memory, aligned to 4 bytes,
  * and the table are the caller's; neither may change until the picture is done. BAD_SIZE,
  * BAD_FORMAT, BAD_TABLE, BAD_MEMORY or BAD_ARGUMENT. */
 int softfocus_fixed_begin(softfocus_fixed_stream* stream, const softfocus_fixed_settings* settings,

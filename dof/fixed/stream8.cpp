@@ -1,4 +1,4 @@
-// The filter for 8-bit colour, RGBA8 and RGB565.
+// The filter for 8-bit colour: RGBA8, and RGB565 in both orders of its bytes.
 
 #include "dof/fixed/moving_sums.h"
 
@@ -27,6 +27,7 @@ Ring ring8(const Stream& stream) {
 
 constexpr uint32_t expand5(uint32_t value) { return value << 3 | value >> 2; }
 constexpr uint32_t expand6(uint32_t value) { return value << 2 | value >> 4; }
+constexpr uint32_t swapped(uint32_t word) { return (word << 8 | word >> 8) & 0xFFFFu; }
 // 31 v / 255 and 63 v / 255, rounded to nearest, for bytes.
 constexpr uint32_t reduce5(uint32_t byte) { return (byte * 249 + 1014) >> 11; }
 constexpr uint32_t reduce6(uint32_t byte) { return (byte * 253 + 505) >> 10; }
@@ -46,8 +47,9 @@ void add_row8(Stream* stream, const void* colours, const void* depths) {
     }
   } else {
     const auto* words = static_cast<const uint16_t*>(colours);
+    const bool swaps = stream->settings.colour == SOFTFOCUS_FIXED_RGB565_SWAPPED;
     for (uint32_t x = 0; x < width; ++x) {
-      const uint32_t word = words[x];
+      const uint32_t word = swaps ? swapped(words[x]) : words[x];
       line[x] =
           pack(expand5(word >> 11) << 2, expand6(word >> 5 & 63u) << 2, expand5(word & 31u) << 2);
     }
@@ -74,10 +76,11 @@ void write_row8(Stream* stream, void* out) {
     }
   } else {
     auto* words = static_cast<uint16_t*>(out);
+    const bool swaps = stream->settings.colour == SOFTFOCUS_FIXED_RGB565_SWAPPED;
     for (uint32_t x = 0; x < width; ++x) {
-      words[x] =
-          static_cast<uint16_t>(reduce5(red(line[x]) >> 2) << 11 |
-                                reduce6(green(line[x]) >> 2) << 5 | reduce5(blue(line[x]) >> 2));
+      const uint32_t word = reduce5(red(line[x]) >> 2) << 11 | reduce6(green(line[x]) >> 2) << 5 |
+                            reduce5(blue(line[x]) >> 2);
+      words[x] = static_cast<uint16_t>(swaps ? swapped(word) : word);
     }
   }
 }

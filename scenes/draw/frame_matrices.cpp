@@ -4,6 +4,7 @@
 
 #include "raster/numbers/exact_math.h"
 #include "raster/numbers/vector_math.h"
+#include "scenes/models/node_motion.h"
 
 namespace softfocus {
 namespace {
@@ -106,11 +107,13 @@ glm::dmat4 object_matrix(const Object& object, double frame) {
   }
   const glm::dmat4 turned =
       multiply(multiply(turn(0, 1, degrees.z), turn(2, 0, degrees.y)), turn(1, 2, degrees.x));
-  const glm::dmat4 to_world = multiply(move, multiply(turned, scale));
-  if (object.mesh_origin == glm::dvec3{0.0}) return to_world;
-  glm::dmat4 origin{1.0};
-  for (int i = 0; i < 3; ++i) origin[3][i] = object.mesh_origin[i];
-  return multiply(to_world, origin);
+  glm::dmat4 to_world = multiply(move, multiply(turned, scale));
+  if (object.mesh_origin != glm::dvec3{0.0}) {
+    glm::dmat4 origin{1.0};
+    for (int i = 0; i < 3; ++i) origin[3][i] = object.mesh_origin[i];
+    to_world = multiply(to_world, origin);
+  }
+  return object.motion ? multiply(to_world, matrix_at(*object.motion, frame)) : to_world;
 }
 
 namespace {

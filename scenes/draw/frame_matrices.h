@@ -57,7 +57,7 @@ glm::dvec3 target_at(const Camera& camera, double frame);
 /// The scene's camera at a frame, for a picture of `width` x `height` square pixels.
 CameraMatrices camera_matrices(const Camera& camera, double frame, int width, int height);
 
-/// Object to world at a frame: move * turn z * turn y * turn x * scale.
+/// Object to world at a frame: move * turn z * turn y * turn x * scale * motion within its model.
 glm::dmat4 object_matrix(const Object& object, double frame);
 
 // What a value that is given at some frames is at the others, and the lens at a frame.

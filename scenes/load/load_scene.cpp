@@ -272,8 +272,8 @@ namespace {
   if (std::filesystem::exists(name, unreadable)) {
     throw SceneError(
         std::string{name} +
-        ": scenes are .toml files and models .gltf, .glb and .obj files; Blender, MeshLab "
-        "and assimp write others so");
+        ": scenes are .toml files and models .gltf, .glb, .obj, .ply and .stl files; Blender, "
+        "MeshLab and assimp write others so");
   }
   std::vector<std::string> there;
   std::string names;
@@ -281,12 +281,12 @@ namespace {
     there.push_back(listing.name);
     names += (names.empty() ? "" : ", ") + listing.name;
   }
-  throw SceneError(
-      "there is no scene \"" + std::string(name) + "\"" +
-      (names.empty() ? "; no scenes were found at all: give a .toml, .glb or .obj file"
-                     : "; there are " + names +
-                           ", random:SEED, and any .toml, .gltf, .glb or .obj file can be given") +
-      did_you_mean(name, there));
+  throw SceneError("there is no scene \"" + std::string(name) + "\"" +
+                   (names.empty() ? "; no scenes were found at all: give a .toml, .glb or .obj file"
+                                  : "; there are " + names +
+                                        ", random:SEED, and any .toml, .gltf, .glb, .obj, .ply or "
+                                        ".stl file can be given") +
+                   did_you_mean(name, there));
 }
 
 constexpr std::string_view kRandom = "random:";

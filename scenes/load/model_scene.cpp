@@ -23,10 +23,28 @@ glm::dvec3 along_axes(const SeenBox& box, glm::dvec3 p) {
   return {dot(p, box.axes[0]), dot(p, box.axes[1]), dot(p, box.axes[2])};
 }
 
+// Where a model that is the scene has an object's positions.
+struct ModelPlace {
+  bool moves;
+  glm::dmat4 matrix;
+
+  ModelPlace(const Object& object, double frame) : moves(object.motion != nullptr), matrix{1.0} {
+    if (!moves) return;
+    matrix = matrix_at(*object.motion, frame);
+    matrix[3] = matrix[3] + glm::dvec4{object.mesh_origin, 0.0};
+  }
+  glm::dvec3 operator()(glm::dvec3 p) const {
+    if (!moves) return p;
+    return glm::dvec3{((matrix[0] * p.x + matrix[1] * p.y) + matrix[2] * p.z) + matrix[3]};
+  }
+};
+
+// At frame 0.
 template <class Visit>
 void for_each_position(const Scene& scene, Visit visit) {
-  for (const Mesh& mesh : scene.meshes) {
-    for (const glm::vec3& position : mesh.positions) visit(glm::dvec3{position});
+  for (const Object& object : scene.objects) {
+    const ModelPlace place(object, 0.0);
+    for (const glm::vec3& position : scene.meshes[object.mesh].positions) visit(place(position));
   }
 }
 
@@ -65,11 +83,11 @@ double ray_to_triangle(glm::dvec3 eye, glm::dvec3 direction, glm::dvec3 a, glm::
 
 double first_hit(const Scene& scene, glm::dvec3 eye, glm::dvec3 direction) {
   double nearest = std::numeric_limits<double>::infinity();
-  for (const Mesh& mesh : scene.meshes) {
+  for (const Object& object : scene.objects) {
+    const Mesh& mesh = scene.meshes[object.mesh];
+    const ModelPlace place(object, 0.0);
     for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-      const auto corner = [&](std::size_t k) {
-        return glm::dvec3{mesh.positions[mesh.indices[i + k]]};
-      };
+      const auto corner = [&](std::size_t k) { return place(mesh.positions[mesh.indices[i + k]]); };
       nearest = std::min(nearest, ray_to_triangle(eye, direction, corner(0), corner(1), corner(2)));
     }
   }
@@ -105,6 +123,49 @@ double depth_of(const Camera& camera, glm::dvec3 p) {
   return dot(p - camera.position, normalize(camera.target - camera.position));
 }
 
+// The last frame in which something moves, or 0.
+double last_moving_frame(const Scene& scene) {
+  double last = 0.0;
+  for (const Object& object : scene.objects) {
+    if (object.motion) last = std::max(last, last_frame(*object.motion));
+  }
+  const std::vector<Keyframe>& keys = scene.camera.position_keys[0];
+  return keys.empty() ? last : std::max(last, keys.back().frame);
+}
+
+// How far from the camera things are at any frame, at most: the corners of boxes, at 64 frames.
+double farthest_ever(const Scene& scene, double last_frame) {
+  constexpr int kSteps = 64;
+  std::vector<glm::dvec3> corners;
+  for (const Object& object : scene.objects) {
+    glm::vec3 low{kLargestCoordinate}, high{-kLargestCoordinate};
+    for (const glm::vec3& position : scene.meshes[object.mesh].positions) {
+      low = glm::min(low, position);
+      high = glm::max(high, position);
+    }
+    for (int step = 0; step <= (object.motion ? kSteps : 0); ++step) {
+      const ModelPlace place(object, last_frame * step / kSteps);
+      for (int i = 0; i < 8; ++i) {
+        corners.push_back(place({(i & 1) != 0 ? low.x : high.x, (i & 2) != 0 ? low.y : high.y,
+                                 (i & 4) != 0 ? low.z : high.z}));
+      }
+    }
+  }
+  const PlaceKeys& keys = scene.camera.position_keys;
+  double farthest = 0.0;
+  for (std::size_t step = 0; step <= kSteps; ++step) {
+    glm::dvec3 eye = scene.camera.position;
+    for (int axis = 0; axis < 3 && !keys[0].empty(); ++axis) {
+      const std::vector<Keyframe>& along = keys[static_cast<std::size_t>(axis)];
+      eye[axis] = along[(along.size() - 1) * step / kSteps].value;
+    }
+    for (const glm::dvec3 corner : corners) {
+      farthest = std::max(farthest, length_of(corner - eye));
+    }
+  }
+  return farthest;
+}
+
 // For a camera of the file's, which may stand in the model: all that is before it, to a
 // 10,000th of the farthest.
 void set_near_and_far(Scene& scene) {
@@ -115,8 +176,11 @@ void set_near_and_far(Scene& scene) {
     farthest = std::max(farthest, z);
     if (z > 0.0) nearest = std::min(nearest, z);
   });
+  const double last = last_moving_frame(scene);
   camera.far_m = farthest > 0.0 ? 1.5 * farthest : 100.0;
-  camera.near_m = std::max(std::min(nearest, camera.far_m) * 0.5, camera.far_m * 1e-4);
+  if (last > 0.0) camera.far_m = std::max(camera.far_m, 1.1 * farthest_ever(scene, last));
+  camera.near_m = camera.far_m * 1e-4;
+  if (last == 0.0) camera.near_m = std::max(std::min(nearest, camera.far_m) * 0.5, camera.near_m);
   // Where it looks at nothing, the middle of the depths is the focus.
   if (farthest > 0.0) {
     const glm::dvec3 forwards = normalize(camera.target - camera.position);
@@ -160,7 +224,8 @@ void add_model(Scene& scene, Model model, const Object& placement,
     Object object = placement;
     object.model = number;
     object.mesh = static_cast<std::uint32_t>(scene.meshes.size());
-    object.mesh_origin = model.origin;
+    object.motion = part.motion;
+    object.mesh_origin = part.motion ? glm::dvec3{0.0} : model.origin;
     object.material = material.value_or(first_material + part.material);
     if (!material) place_uvs(part.mesh, part.placement);
     scene.meshes.push_back(std::move(part.mesh));
@@ -189,9 +254,10 @@ Scene make_model_scene(Model model, const std::string& name) {
       {LightKind::directional, {1.0f, 0.25f, 0.35f}, {0.25f, 0.28f, 0.34f}},
   };
   if (!model.lights.empty()) scene.lights = model.lights;
-  model.origin = glm::dvec3{0.0};
   const std::optional<Camera> camera = model.camera;
+  const glm::dvec3 origin = model.origin;
   add_model(scene, std::move(model), Object{}, std::nullopt);
+  for (Object& object : scene.objects) object.mesh_origin = object.mesh_origin - origin;
   if (camera) {
     scene.camera = *camera;
     set_near_and_far(scene);
@@ -208,6 +274,10 @@ Scene make_model_scene(Model model, const std::string& name) {
   scene.notes.push_back(name + ": a lens of " + rounded(lens.lens.focal_length_mm) + " mm at f/" +
                         rounded(lens.lens.f_number) + ", focused at " + rounded(lens.lens.focus_m) +
                         " m, circles " + rounded(lens.coc_scale) + " times as large (--coc-scale)");
+  if (const double last = last_moving_frame(scene); last > 0.0) {
+    scene.notes.push_back(name + ": moves up to frame " + rounded(std::ceil(last)) +
+                          ", 60 a second (--frames)");
+  }
   return scene;
 }
 

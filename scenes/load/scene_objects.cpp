@@ -85,7 +85,7 @@ void read_model(Section& section, const std::filesystem::path& directory,
                 const NamedSurfaces& surfaces, ReadModels& models, Scene& scene, ThreadPool* pool) {
   if (!has_key(section, "file")) {
     fail_at(section, "file",
-            "is missing; the path of a model, .gltf, .glb or .obj, would be right");
+            "is missing; the path of a model, .gltf, .glb, .obj, .ply or .stl, would be right");
   }
   const Object placement = read_placement(section);
   std::optional<std::uint32_t> material;
@@ -106,6 +106,7 @@ void read_model(Section& section, const std::filesystem::path& directory,
     object.model = number;
     object.mesh = same.mesh;
     object.mesh_origin = same.mesh_origin;
+    object.motion = same.motion;
     object.material = material.value_or(same.material);
     scene.objects.push_back(object);
   }

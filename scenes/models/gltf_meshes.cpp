@@ -48,10 +48,9 @@ glm::dvec3 place(const glm::dmat4& m, glm::dvec3 p) {
   return glm::dvec3{((m[0] * p.x + m[1] * p.y) + m[2] * p.z) + m[3]};
 }
 
-// Of a skin's joints: world of the joint times the inverse of its bind pose. `worlds` are those of
-// all nodes, null outside the scene.
+// Of a skin's joints: world of the joint times the inverse of its bind pose.
 std::vector<glm::dmat4> joint_matrices(GltfFile& file, const tinygltf::Skin& skin,
-                                       std::span<const glm::dmat4* const> worlds) {
+                                       std::span<const PlacedNode* const> nodes) {
   std::optional<GltfNumbers> inverse;
   if (skin.inverseBindMatrices >= 0) inverse = read_accessor(file, skin.inverseBindMatrices);
   if (inverse && (inverse->width != 16 || inverse->count() < skin.joints.size())) {
@@ -60,8 +59,9 @@ std::vector<glm::dmat4> joint_matrices(GltfFile& file, const tinygltf::Skin& ski
   std::vector<glm::dmat4> matrices;
   for (std::size_t i = 0; i < skin.joints.size(); ++i) {
     item_of(file, file.gltf.nodes, skin.joints[i], "node");
-    const glm::dmat4* const world = worlds[static_cast<std::size_t>(skin.joints[i])];
-    glm::dmat4 matrix = world != nullptr ? *world : glm::dmat4{1.0};
+    const PlacedNode* const joint = nodes[static_cast<std::size_t>(skin.joints[i])];
+    glm::dmat4 matrix = joint != nullptr ? joint->to_world : glm::dmat4{1.0};
+    if (joint != nullptr && joint->motion) warn_gltf(file, "skins stand as they do at frame 0");
     if (inverse) {
       glm::dmat4 bind{1.0};
       for (std::size_t k = 0; k < 16; ++k) {
@@ -113,8 +113,8 @@ bool mirrors_space(const glm::dmat4& m) {
 class VertexMatrices {
  public:
   VertexMatrices(GltfFile& file, const tinygltf::Primitive& primitive, std::size_t count,
-                 const glm::dmat4& to_world, std::span<const glm::dmat4> joints)
-      : to_world_(to_world), joints_(joints) {
+                 const glm::dmat4& of_node, std::span<const glm::dmat4> joints)
+      : of_node_(of_node), joints_(joints) {
     for (int set = 0; !joints.empty(); ++set) {
       const std::string end = std::to_string(set);
       auto numbers = read_attribute(file, primitive.attributes, "JOINTS_" + end, count, 4, 4);
@@ -143,7 +143,7 @@ class VertexMatrices {
         all += weight;
       }
     }
-    if (all == 0.0) return to_world_;
+    if (all == 0.0) return of_node_;
     for (int column = 0; column < 4; ++column) mean[column] = mean[column] / all;
     return mean;
   }
@@ -152,7 +152,7 @@ class VertexMatrices {
   struct Set {
     GltfNumbers joints, weights;
   };
-  const glm::dmat4& to_world_;
+  const glm::dmat4& of_node_;
   std::span<const glm::dmat4> joints_;
   std::vector<Set> sets_{};
 };
@@ -170,7 +170,7 @@ glm::vec3 vertex_colour(const double* colour) {
 PlacedVertices place_vertices(GltfFile& file, const tinygltf::Primitive& primitive,
                               GltfNumbers positions, std::span<const std::uint32_t> used,
                               std::span<const double> morph_weights, const UvTransform& uvs,
-                              const glm::dmat4& to_world, std::span<const glm::dmat4> joints) {
+                              const PlacedNode& at, std::span<const glm::dmat4> joints) {
   const std::size_t count = positions.count();
   add_morph_targets(file, primitive, morph_weights, "POSITION", positions);
   auto normals = read_attribute(file, primitive.attributes, "NORMAL", count, 3, 3);
@@ -180,7 +180,7 @@ PlacedVertices place_vertices(GltfFile& file, const tinygltf::Primitive& primiti
   const auto coordinates = read_attribute(file, primitive.attributes,
                                           "TEXCOORD_" + std::to_string(uvs.set), count, 2, 2);
   const auto colours = read_attribute(file, primitive.attributes, "COLOR_0", count, 3, 4);
-  const VertexMatrices matrices(file, primitive, count, to_world, joints);
+  const VertexMatrices matrices(file, primitive, count, at.to_motion, joints);
   PlacedVertices placed;
   placed.positions.reserve(used.size());
   for (const std::uint32_t i : used) {
@@ -242,11 +242,12 @@ std::vector<std::uint32_t> corners_of(GltfFile& file, const tinygltf::Primitive&
   return corners;
 }
 
-// The part for a material, with or without coordinates and colours.
-GltfPart& part_for(GltfParts& all, std::uint32_t material, bool has_uvs, bool has_colours) {
+// The part for a material and a motion, with or without coordinates and colours.
+GltfPart& part_for(GltfParts& all, std::uint32_t material, bool has_uvs, bool has_colours,
+                   const std::shared_ptr<const NodeMotion>& motion) {
   const auto [entry, is_new] =
-      all.number_of.try_emplace({material, has_uvs, has_colours}, all.parts.size());
-  if (is_new) all.parts.emplace_back(GltfPart{material, has_uvs, has_colours});
+      all.number_of.try_emplace({material, has_uvs, has_colours, motion.get()}, all.parts.size());
+  if (is_new) all.parts.emplace_back(GltfPart{material, has_uvs, has_colours, motion});
   return all.parts[entry->second];
 }
 
@@ -327,12 +328,16 @@ constexpr std::size_t kMostGltfCorners = std::size_t{1} << 26;
 
 }  // namespace
 
-void add_mesh(GltfFile& file, const tinygltf::Node& node, const glm::dmat4& to_world,
-              std::span<const glm::dmat4* const> worlds, GltfParts& parts) {
+void add_mesh(GltfFile& file, const PlacedNode& placed, std::span<const PlacedNode* const> nodes,
+              GltfParts& parts) {
+  const tinygltf::Node& node = file.gltf.nodes[static_cast<std::size_t>(placed.number)];
+  PlacedNode at = placed;
   const tinygltf::Mesh& mesh = item_of(file, file.gltf.meshes, node.mesh, "mesh");
   std::vector<glm::dmat4> joints;
   if (node.skin >= 0) {
-    joints = joint_matrices(file, item_of(file, file.gltf.skins, node.skin, "skin"), worlds);
+    joints = joint_matrices(file, item_of(file, file.gltf.skins, node.skin, "skin"), nodes);
+    at.motion = nullptr;  // its joints place it
+    at.to_motion = at.to_world;
   }
   const std::vector<double>& weights = node.weights.empty() ? mesh.weights : node.weights;
   for (const tinygltf::Primitive& primitive : mesh.primitives) {
@@ -358,12 +363,13 @@ void add_mesh(GltfFile& file, const tinygltf::Node& node, const glm::dmat4& to_w
                           std::to_string(kMostGltfCorners / 3) + " triangles");
     }
     const PlacedVertices vertices =
-        place_vertices(file, primitive, std::move(positions), used, weights, uvs, to_world, joints);
+        place_vertices(file, primitive, std::move(positions), used, weights, uvs, at, joints);
     if (has_opacity && vertices.have_opacity) {
       warn_gltf(file, "the opacity of vertex colours is left out");
     }
-    append_triangles(part_for(parts, material, !vertices.uvs.empty(), !vertices.colours.empty()),
-                     vertices, corners, mirrors_space(to_world));
+    append_triangles(
+        part_for(parts, material, !vertices.uvs.empty(), !vertices.colours.empty(), at.motion),
+        vertices, corners, mirrors_space(at.to_motion));
   }
 }
 
@@ -371,9 +377,16 @@ ModelBox finish_parts(GltfFile& file, std::vector<GltfPart>& parts) {
   constexpr double kFar = std::numeric_limits<double>::infinity();
   glm::dvec3 low{kFar}, high{-kFar};
   for (const GltfPart& part : parts) {
-    for (const glm::dvec3& p : part.positions) {
+    const glm::dmat4 at_first = part.motion ? matrix_at(*part.motion, 0.0) : glm::dmat4{1.0};
+    double radius = 0.0;
+    for (const glm::dvec3& own : part.positions) {
+      const glm::dvec3 p = part.motion ? place(at_first, own) : own;
       low = glm::min(low, p);
       high = glm::max(high, p);
+      radius = std::max(radius, length_of(own));
+    }
+    if (part.motion && !(reach(*part.motion, radius) <= kLargestCoordinate)) {
+      fail_gltf(file, "an animation leads beyond 1e9");
     }
   }
   constexpr double kSmallest = 1e-9;  // lengths are squared in binary32
@@ -386,9 +399,10 @@ ModelBox finish_parts(GltfFile& file, std::vector<GltfPart>& parts) {
     model.warnings.push_back(far_warning(file.path, model.origin));
   }
   for (GltfPart& part : parts) {
-    for (const glm::dvec3& p : part.positions) part.mesh.positions.emplace_back(p - model.origin);
+    const glm::dvec3 origin = part.motion ? glm::dvec3{0.0} : model.origin;
+    for (const glm::dvec3& p : part.positions) part.mesh.positions.emplace_back(p - origin);
     part.positions = {};
-    model.parts.push_back({std::move(part.mesh), part.material});
+    model.parts.push_back({std::move(part.mesh), part.material, {}, part.motion});
   }
   return {low - model.origin, high - model.origin};
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <glm/mat4x4.hpp>
 #include <map>
+#include <memory>
 #include <span>
 #include <tuple>
 #include <vector>
@@ -12,30 +13,41 @@
 
 namespace softfocus {
 
-/// What has one material. It grows in binary64 until the model's middle is known.
+/// A node in the file's scene.
+struct PlacedNode {
+  int number;
+  glm::dmat4 to_world;  ///< at frame 0
+  /// Of the node, or of the next above that moves; null: none does.
+  std::shared_ptr<const NodeMotion> motion;
+  glm::dmat4 to_motion;  ///< the matrix to there, or to the world
+};
+
+/// What has one material and moves as one. It grows in binary64 until the model's middle is known.
 struct GltfPart {
   std::uint32_t material;
   bool has_uvs, has_colours;
-  std::vector<glm::dvec3> positions{};
+  std::shared_ptr<const NodeMotion> motion;
+  std::vector<glm::dvec3> positions{};  ///< where it moves, in the coordinates of what moves it
   Mesh mesh{};
 };
 
-/// A part for each material, with or without texture coordinates and vertex colours.
+/// A part for each material and motion, with or without texture coordinates and vertex colours.
 struct GltfParts {
   std::vector<GltfPart> parts{};
-  std::map<std::tuple<std::uint32_t, bool, bool>, std::size_t> number_of{};
+  std::map<std::tuple<std::uint32_t, bool, bool, const NodeMotion*>, std::size_t> number_of{};
   std::size_t corners = 0;  ///< of all
 };
 
-/// Adds a node's mesh. `worlds` are the matrices of all nodes, null outside the scene.
-void add_mesh(GltfFile& file, const tinygltf::Node& node, const glm::dmat4& to_world,
-              std::span<const glm::dmat4* const> worlds, GltfParts& parts);
+/// Adds a node's mesh. `nodes` are all by number, null outside the scene.
+void add_mesh(GltfFile& file, const PlacedNode& at, std::span<const PlacedNode* const> nodes,
+              GltfParts& parts);
 
 struct ModelBox {
   glm::dvec3 low, high;
 };
 
-/// Puts the parts into the model, less its middle if that is far. Returns the box that holds them.
+/// Puts the parts into the model, those that stand still less its middle if that is far. Returns
+/// the box that holds them at frame 0.
 ModelBox finish_parts(GltfFile& file, std::vector<GltfPart>& parts);
 
 }  // namespace softfocus

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "raster/numbers/vector_math.h"
+#include "scenes/models/gltf_animations.h"
 #include "scenes/models/gltf_materials.h"
 #include "scenes/models/gltf_meshes.h"
 
@@ -18,58 +19,52 @@ namespace {
 constexpr int kMostDepth = 1000;
 
 glm::dmat4 own_matrix(const tinygltf::Node& node) {
+  if (node.matrix.size() != 16) return matrix_at(standing(node), 0.0);
   glm::dmat4 m{1.0};
-  if (node.matrix.size() == 16) {
-    for (std::size_t i = 0; i < 16; ++i) {
-      m[static_cast<int>(i / 4)][static_cast<int>(i % 4)] = node.matrix[i];
-    }
-    return m;
-  }
-  if (node.rotation.size() == 4) {
-    double x = node.rotation[0], y = node.rotation[1], z = node.rotation[2], w = node.rotation[3];
-    const double length = std::sqrt(x * x + y * y + z * z + w * w);
-    if (length > 0.0) {
-      x /= length;
-      y /= length;
-      z /= length;
-      w /= length;
-      m[0] = {1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + z * w), 2.0 * (x * z - y * w), 0.0};
-      m[1] = {2.0 * (x * y - z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + x * w), 0.0};
-      m[2] = {2.0 * (x * z + y * w), 2.0 * (y * z - x * w), 1.0 - 2.0 * (x * x + y * y), 0.0};
-    }
-  }
-  for (int i = 0; i < 3; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    if (node.scale.size() == 3) m[i] = m[i] * node.scale[at];
-    if (node.translation.size() == 3) m[3][i] = node.translation[at];
+  for (std::size_t i = 0; i < 16; ++i) {
+    m[static_cast<int>(i / 4)][static_cast<int>(i % 4)] = node.matrix[i];
   }
   return m;
 }
 
-struct PlacedNode {
-  int number;
-  glm::dmat4 to_world;
-};
+// Below another, or by itself.
+PlacedNode place_node(const tinygltf::Node& node, int number, const NodeMotion* tracks,
+                      const PlacedNode& parent) {
+  PlacedNode placed = parent;
+  placed.number = number;
+  const glm::dmat4 own = tracks != nullptr ? matrix_at(*tracks, 0.0) : own_matrix(node);
+  placed.to_world = multiply(parent.to_world, own);
+  placed.to_motion = multiply(parent.to_motion, own);
+  if (tracks == nullptr || !moves(*tracks)) return placed;
+  auto motion = std::make_shared<NodeMotion>(*tracks);
+  motion->above = parent.motion;
+  motion->between = parent.to_motion;
+  placed.motion = std::move(motion);
+  placed.to_motion = glm::dmat4{1.0};
+  return placed;
+}
 
 // The nodes of the file's scene, parents first.
-std::vector<PlacedNode> placed_nodes(const GltfFile& file) {
+std::vector<PlacedNode> placed_nodes(GltfFile& file) {
   const tinygltf::Model& gltf = file.gltf;
+  const std::map<int, NodeMotion> tracks = read_animations(file);
   struct Open {
     int node, depth;
-    glm::dmat4 parent;
+    PlacedNode parent;
   };
+  const PlacedNode root{-1, glm::dmat4{1.0}, nullptr, glm::dmat4{1.0}};
   std::vector<Open> open;
   if (!gltf.scenes.empty()) {
     const tinygltf::Scene& scene =
         item_of(file, gltf.scenes, std::max(gltf.defaultScene, 0), "scene");
-    for (const int node : scene.nodes) open.push_back({node, 0, glm::dmat4{1.0}});
+    for (const int node : scene.nodes) open.push_back({node, 0, root});
   } else {
     std::set<int> children;
     for (const tinygltf::Node& node : gltf.nodes) {
       children.insert(node.children.begin(), node.children.end());
     }
     for (int i = 0; i < static_cast<int>(gltf.nodes.size()); ++i) {
-      if (!children.contains(i)) open.push_back({i, 0, glm::dmat4{1.0}});
+      if (!children.contains(i)) open.push_back({i, 0, root});
     }
   }
   std::reverse(open.begin(), open.end());
@@ -89,15 +84,46 @@ std::vector<PlacedNode> placed_nodes(const GltfFile& file) {
                           std::to_string(kMostDepth) + " others");
     }
     is_seen[number] = true;
-    placed.push_back({next.node, multiply(next.parent, own_matrix(node))});
+    const auto moved = tracks.find(next.node);
+    placed.push_back(
+        place_node(node, next.node, moved == tracks.end() ? nullptr : &moved->second, next.parent));
     for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) {
-      open.push_back({*child, next.depth + 1, placed.back().to_world});
+      open.push_back({*child, next.depth + 1, placed.back()});
     }
   }
   return placed;
 }
 
-void add_camera(GltfFile& file, const tinygltf::Node& node, const glm::dmat4& to_world) {
+// Keys at all whole frames: a camera's own go by straight lines. A camera that rolls has the `up`
+// of frame 0.
+void add_camera_keys(GltfFile& file, const PlacedNode& at, Camera& camera) {
+  constexpr double kMostFrames = 36000.0;  // ten minutes
+  const double last = std::ceil(last_frame(*at.motion));
+  if (last > kMostFrames) warn_gltf(file, "the camera stands still after ten minutes");
+  const glm::dvec3 y{0.0, 1.0, 0.0};
+  bool is_upright = true, rolls = false;
+  for (double frame = 0.0; frame <= std::min(last, kMostFrames); ++frame) {
+    const glm::dmat4 to_world = multiply(matrix_at(*at.motion, frame), at.to_motion);
+    const glm::dvec3 eye = glm::dvec3{to_world[3]} - file.model.origin;
+    const glm::dvec3 target = eye - normalize(glm::dvec3{to_world[2]});
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto i = static_cast<std::size_t>(axis);
+      camera.position_keys[i].push_back({frame, eye[axis]});
+      camera.target_keys[i].push_back({frame, target[axis]});
+    }
+    const glm::dvec3 right = normalize(glm::dvec3{to_world[0]});
+    is_upright = is_upright && std::fabs(dot(right, y)) < 1e-4 && to_world[1].y > 0.0;
+    rolls = rolls || std::fabs(dot(right, camera.up)) > 1e-3;
+  }
+  if (is_upright) {
+    camera.up = y;
+  } else if (rolls) {
+    warn_gltf(file, "a camera that rolls keeps what is up at frame 0");
+  }
+}
+
+void add_camera(GltfFile& file, const tinygltf::Node& node, const PlacedNode& at) {
+  const glm::dmat4& to_world = at.to_world;
   const tinygltf::Camera& from = item_of(file, file.gltf.cameras, node.camera, "camera");
   if (file.model.camera) return;
   if (from.type != "perspective") {
@@ -123,15 +149,18 @@ void add_camera(GltfFile& file, const tinygltf::Node& node, const glm::dmat4& to
   camera.target = camera.position - back;
   camera.up = up;
   camera.fov_y_degrees = fov_degrees;
+  if (at.motion) add_camera_keys(file, at, camera);
   file.model.camera = camera;
 }
 
-void add_light(GltfFile& file, const tinygltf::Node& node, const glm::dmat4& to_world,
-               glm::dvec3 middle, double size) {
+void add_light(GltfFile& file, const tinygltf::Node& node, const PlacedNode& at, glm::dvec3 middle,
+               double size) {
+  const glm::dmat4& to_world = at.to_world;
   const tinygltf::Value* named = extension(node.extensions, "KHR_lights_punctual");
   const int number = named != nullptr ? index_in(*named, "light") : -1;
   if (number < 0 || static_cast<std::size_t>(number) >= file.gltf.lights.size()) return;
   const tinygltf::Light& from = file.gltf.lights[static_cast<std::size_t>(number)];
+  if (at.motion) warn_gltf(file, "lights stand as they do at frame 0");
   Light light;
   double throws = from.intensity;
   if (from.type == "directional") {
@@ -143,10 +172,10 @@ void add_light(GltfFile& file, const tinygltf::Node& node, const glm::dmat4& to_
   } else {
     if (from.type == "spot") warn_gltf(file, "a spot light shines in all directions");
     light.kind = LightKind::point;
-    const glm::dvec3 at = glm::dvec3{to_world[3]} - file.model.origin;
-    light.position_or_direction = glm::vec3{at};
+    const glm::dvec3 place = glm::dvec3{to_world[3]} - file.model.origin;
+    light.position_or_direction = glm::vec3{place};
     // Within the model it counts as at its half size.
-    const glm::dvec3 way = at - middle;
+    const glm::dvec3 way = place - middle;
     throws /= std::max({dot(way, way), size * size / 16.0, 1e-12});
   }
   for (std::size_t i = 0; i < 3; ++i) {
@@ -187,12 +216,12 @@ Model load_gltf_model(const std::filesystem::path& path) {
   GltfFile file = open_gltf(path);
   const tinygltf::Model& gltf = file.gltf;
   const std::vector<PlacedNode> placed = placed_nodes(file);
-  std::vector<const glm::dmat4*> worlds(gltf.nodes.size());
-  for (const PlacedNode& at : placed) worlds[static_cast<std::size_t>(at.number)] = &at.to_world;
+  std::vector<const PlacedNode*> nodes(gltf.nodes.size());
+  for (const PlacedNode& at : placed) nodes[static_cast<std::size_t>(at.number)] = &at;
   GltfParts grown;
   for (const PlacedNode& at : placed) {
     const tinygltf::Node& node = gltf.nodes[static_cast<std::size_t>(at.number)];
-    if (node.mesh >= 0) add_mesh(file, node, at.to_world, worlds, grown);
+    if (node.mesh >= 0) add_mesh(file, at, nodes, grown);
   }
   std::vector<GltfPart>& parts = grown.parts;
   // Pictures of the materials that are used alone are read; the last is for none.
@@ -214,11 +243,10 @@ Model load_gltf_model(const std::filesystem::path& path) {
   const double size = std::sqrt(dot(extent, extent));
   for (const PlacedNode& at : placed) {
     const tinygltf::Node& node = gltf.nodes[static_cast<std::size_t>(at.number)];
-    if (node.camera >= 0) add_camera(file, node, at.to_world);
-    add_light(file, node, at.to_world, middle, size);
+    if (node.camera >= 0) add_camera(file, node, at);
+    add_light(file, node, at, middle, size);
   }
   level_lights(file);
-  if (!gltf.animations.empty()) warn_gltf(file, "animations are left out");
   return std::move(file.model);
 }
 

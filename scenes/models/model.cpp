@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <string>
+#include <utility>
 
 #include "scenes/files/file_bytes.h"
 #include "scenes/files/scene_error.h"
 #include "scenes/models/gltf_model.h"
 #include "scenes/models/obj_model.h"
+#include "scenes/models/ply_stl.h"
 
 namespace softfocus {
 namespace {
@@ -19,11 +22,21 @@ bool is_gltf_name(std::string_view name) {
 }  // namespace
 
 bool is_model_name(std::string_view name) {
-  return is_gltf_name(name) || has_extension(name, ".obj");
+  return is_gltf_name(name) || has_extension(name, ".obj") || has_extension(name, ".ply") ||
+         has_extension(name, ".stl");
 }
 
 Model load_model(const std::filesystem::path& file, ThreadPool* pool) {
-  return is_gltf_name(file.string()) ? load_gltf_model(file) : load_obj_model(file, pool);
+  const std::string name = file.string();
+  if (is_gltf_name(name)) return load_gltf_model(file);
+  if (has_extension(name, ".obj")) return load_obj_model(file, pool);
+  constexpr std::size_t kMostBytes = std::size_t{1} << 29;
+  check_no_pipe(file);
+  const std::string bytes = read_file_bytes(file, kMostBytes);
+  FileFaces read = has_extension(name, ".ply") ? parse_ply(bytes, name) : parse_stl(bytes, name);
+  MtlMaterials materials;
+  if (!read.texture.empty()) add_picture(file, read.texture, materials);
+  return model_of_faces(std::move(read.faces), file, read.origin, std::move(materials), pool);
 }
 
 glm::dvec3 far_middle(glm::dvec3 low, glm::dvec3 high) {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,6 +11,7 @@
 
 #include "raster/threads/parallel.h"
 #include "scenes/models/mtl_file.h"
+#include "scenes/models/node_motion.h"
 #include "scenes/scene.h"
 
 namespace softfocus {
@@ -22,10 +24,12 @@ struct Model {
   struct Part {
     Mesh mesh;
     std::uint32_t material = 0;
-    UvPlacement placement{};  ///< of the material's textures, not yet applied
+    UvPlacement placement{};                     ///< of the material's textures, not yet applied
+    std::shared_ptr<const NodeMotion> motion{};  ///< null: it stands still
   };
   std::vector<Part> parts;
-  glm::dvec3 origin{0.0};  ///< what was subtracted from the file's positions
+  /// What was subtracted from the file's positions, but of parts that move.
+  glm::dvec3 origin{0.0};
   /// What was missing, a line each.
   std::vector<std::string> warnings;
   std::vector<std::filesystem::path> files;  ///< the model, its libraries and their textures
@@ -34,10 +38,10 @@ struct Model {
   std::vector<Light> lights{};
 };
 
-/// Whether a name is a model's file: ".gltf", ".glb", ".obj".
+/// Whether a name is a model's file: ".gltf", ".glb", ".obj", ".ply", ".stl".
 bool is_model_name(std::string_view name);
 
-/// load_gltf_model() or load_obj_model(), by the end of the name.
+/// load_gltf_model(), load_obj_model(), parse_ply() or parse_stl(), by the end of the name.
 Model load_model(const std::filesystem::path& file, ThreadPool* pool);
 
 // What readers share.

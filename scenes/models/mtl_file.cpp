@@ -334,4 +334,13 @@ void load_mtl(const std::filesystem::path& library, MtlMaterials& materials) {
   }
 }
 
+void add_picture(const std::filesystem::path& file, const std::string& picture,
+                 MtlMaterials& materials) {
+  Material material = neutral_grey();
+  material.name = picture;
+  material.texture = texture_index(file, picture, picture, materials);
+  if (material.texture) material.diffuse = material.ambient = glm::vec3{1.0f};
+  materials.by_name.emplace(picture, material);
+}
+
 }  // namespace softfocus

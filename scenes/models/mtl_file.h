@@ -54,6 +54,10 @@ struct MtlMaterials {
 /// JPEG, is a warning. Throws SceneError for a texture that is there and unreadable.
 void load_mtl(const std::filesystem::path& library, MtlMaterials& materials);
 
+/// Adds a material that is a texture alone; `file` names it. Warns and throws as load_mtl().
+void add_picture(const std::filesystem::path& file, const std::string& picture,
+                 MtlMaterials& materials);
+
 /// Stands in for a missing material.
 Material neutral_grey();
 

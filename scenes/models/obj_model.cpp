@@ -314,15 +314,12 @@ void show_invisible(const ObjText& obj, const std::filesystem::path& file, Model
 
 }  // namespace
 
-Model load_obj_model(const std::filesystem::path& file, ThreadPool* pool) {
+Model model_of_faces(ObjText obj, const std::filesystem::path& file, glm::dvec3 origin,
+                     MtlMaterials library, ThreadPool* pool) {
   if (pool == nullptr) {
     ThreadPool here{1};
-    return load_obj_model(file, &here);
+    return model_of_faces(std::move(obj), file, origin, std::move(library), &here);
   }
-  const std::string text = read_file_text(file, kMaxObjBytes);
-  ObjText obj = parse_obj_text(text, file.string(), glm::dvec3{0.0}, pool);
-  const glm::dvec3 origin = middle_of(obj);
-  if (origin != glm::dvec3{0.0}) obj = parse_obj_text(text, file.string(), origin, pool);
   std::vector<std::uint32_t> place_of, doubled;
   std::vector<ObjTriangle> triangles;
   // Few are doubled. Polygons are not taken apart in vain: that is slow.
@@ -345,8 +342,6 @@ Model load_obj_model(const std::filesystem::path& file, ThreadPool* pool) {
   turn_alike(obj, place_of, triangles, *pool);
   const std::vector<glm::vec3> all_normals = complete_normals(obj, place_of, triangles);
 
-  MtlMaterials library;
-  load_libraries(obj, file, library);
   Model model;
   model.origin = origin;
   model.materials = list_materials(obj, file, library);
@@ -393,6 +388,16 @@ Model load_obj_model(const std::filesystem::path& file, ThreadPool* pool) {
     model.parts.push_back(std::move(part.part));
   }
   return model;
+}
+
+Model load_obj_model(const std::filesystem::path& file, ThreadPool* pool) {
+  const std::string text = read_file_text(file, kMaxObjBytes);
+  ObjText obj = parse_obj_text(text, file.string(), glm::dvec3{0.0}, pool);
+  const glm::dvec3 origin = middle_of(obj);
+  if (origin != glm::dvec3{0.0}) obj = parse_obj_text(text, file.string(), origin, pool);
+  MtlMaterials library;
+  load_libraries(obj, file, library);
+  return model_of_faces(std::move(obj), file, origin, std::move(library), pool);
 }
 
 }  // namespace softfocus

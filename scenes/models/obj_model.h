@@ -5,6 +5,8 @@
 
 #include "raster/threads/parallel.h"
 #include "scenes/models/model.h"
+#include "scenes/models/mtl_file.h"
+#include "scenes/models/obj_text.h"
 
 namespace softfocus {
 
@@ -27,5 +29,9 @@ namespace softfocus {
 /// given for it is turned round. v of the texture coordinates, which OBJ counts
 /// upwards, is flipped. `pool`, if any, shares out the work.
 Model load_obj_model(const std::filesystem::path& file, ThreadPool* pool = nullptr);
+
+/// The same of faces that are read already, less `origin`, and of the materials that they name.
+Model model_of_faces(ObjText obj, const std::filesystem::path& file, glm::dvec3 origin,
+                     MtlMaterials materials, ThreadPool* pool);
 
 }  // namespace softfocus

@@ -95,8 +95,8 @@ std::size_t mutate_spirv(std::uint8_t* data, std::size_t size, std::size_t most,
 /// LLVMFuzzerTestOneInput() does: -1 keeps the input out of the corpus.
 using FuzzOneInput = int(const std::uint8_t* data, std::size_t size);
 FuzzOneInput fuzz_fixed, fuzz_glsl, fuzz_gltf, fuzz_mtl, fuzz_notes, fuzz_obj, fuzz_options,
-    fuzz_profile, fuzz_refocus, fuzz_relief, fuzz_scene, fuzz_sequence, fuzz_shader, fuzz_sums,
-    fuzz_texture;
+    fuzz_ply, fuzz_profile, fuzz_refocus, fuzz_relief, fuzz_scene, fuzz_sequence, fuzz_shader,
+    fuzz_stl, fuzz_sums, fuzz_texture;
 int fuzz_picture(const PictureFileReader& reader, const std::uint8_t* data, std::size_t size);
 
 /// Ends the program, which is a finding, unless it holds.

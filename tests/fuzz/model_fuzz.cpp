@@ -27,3 +27,11 @@ int softfocus::fuzz_obj(const std::uint8_t* data, std::size_t size) {
 int softfocus::fuzz_gltf(const std::uint8_t* data, std::size_t size) {
   return draw_model(fuzz_file(data, size, ".gltf"));
 }
+
+int softfocus::fuzz_ply(const std::uint8_t* data, std::size_t size) {
+  return draw_model(fuzz_file(data, size, ".ply"));
+}
+
+int softfocus::fuzz_stl(const std::uint8_t* data, std::size_t size) {
+  return draw_model(fuzz_file(data, size, ".stl"));
+}

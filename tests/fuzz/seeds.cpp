@@ -199,7 +199,7 @@ void put_texts(const fs::path& all) {
   Seeds{all, "mtl"}.put("one",
                         "newmtl red\nKd 0.7 0 0\nKa 0 0 0\nKs 1 1 1\nNs 30\nd 0.5\nTr 0.5\n"
                         "map_Kd -s 1 1 a.png\nmap_d b.png\n# end\nnewmtl other\nd -halo 0.5\n");
-  // A triangle with a skin, a morph target, a texture, a camera and a light.
+  // A triangle that moves, with a skin, a morph target, a texture, a camera and a light.
   const Seeds gltf{all, "gltf"};
   gltf.put(
       "triangle",
@@ -209,7 +209,10 @@ void put_texts(const fs::path& all) {
       R"("count":3,"type":"VEC3"},{"bufferView":1,"componentType":5123,"normalized":true,"count":3,)"
       R"("type":"VEC2"},{"bufferView":1,"componentType":5121,"count":3,"type":"VEC4"},{"componentType":5126,)"
       R"("count":3,"type":"VEC3","sparse":{"count":1,"indices":{"bufferView":0,"componentType":5121},)"
-      R"("values":{"bufferView":0}}}],"meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":0,)"
+      R"("values":{"bufferView":0}}},{"bufferView":0,"byteOffset":8,"componentType":5126,"count":2,)"
+      R"("type":"SCALAR"},{"bufferView":0,"componentType":5126,"count":2,"type":"VEC3"}],"animations":[)"
+      R"({"channels":[{"sampler":0,"target":{"node":0,"path":"translation"}},{"sampler":0,"target":)"
+      R"({"node":1,"path":"scale"}}],"samplers":[{"input":4,"output":5}]}],"meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":0,)"
       R"("TEXCOORD_0":1,"JOINTS_0":2,"WEIGHTS_0":2},"targets":[{"POSITION":3}],"material":0,"mode":4}],)"
       R"("weights":[0.5]}],"skins":[{"joints":[1]}],"nodes":[{"mesh":0,"skin":0,"children":[1,2]},)"
       R"({"rotation":[0,0,1,1],"scale":[1,-1,2],"camera":0},{"translation":[0,0,3],)"
@@ -227,6 +230,25 @@ void put_texts(const fs::path& all) {
           "mtllib a.mtl\no thing\ng one\nusemtl red\ns 1\nv 0 0 0\nv 1 0 0 1\nv 1 1 0\nv 0 1 0.5\n"
           "vt 0 0\nvt 1 0\nvn 0 0 1\nf 1/1/1 2/2/1 3/1/1 4/2/1\nf -1//-1 -2//-1 -3//-1\n");
   obj.put("plain", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 1e3 2 -5\nf 1 2 3\nusemtl b\nf 2 3 4 \\\n 1\n");
+  const std::string ply =
+      "element vertex 3\nproperty uchar x\nproperty char y\nproperty float z\n"
+      "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty double s\n"
+      "property ushort t\nelement face 1\nproperty list uchar uchar vertex_indices\n"
+      "property list uchar uchar texcoord\nend_header\n";
+  Seeds{all, "ply"}.put("text", "ply\nformat ascii 1.0\n" + ply +
+                                    "0 0 0.5 1 2 3 0 0\n1 0 0 1 2 3 0 0\n0 1 -1e0 1 2 3 1 9\n"
+                                    "3 0 1 2 6 0 0 0 1 1 0\n");
+  std::string vertices(3 * 19, '\0');
+  vertices[0] = vertices[20] = vertices[39] = 1;
+  Seeds{all, "ply"}.put("binary", "ply\nformat binary_big_endian 1.0\n" + ply + vertices +
+                                      std::string{"\3\0\1\2\0", 5});
+  Seeds{all, "stl"}.put("text",
+                        "solid one\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+                        "vertex 0 1.5e0 0\nendloop\nendfacet\nendsolid\n");
+  std::string facet(84 + 50, '\0');
+  facet[80] = 1;
+  facet[84 + 14] = facet[84 + 30] = facet[84 + 40] = '?';
+  Seeds{all, "stl"}.put("binary", facet);
   Seeds{all, "profile"}.put("ieee", profile_text({"mine", "a profile", Profile{}}, "heading"));
   const Seeds notes{all, "notes"};
   notes.put("notes", json_text(notes_json(small_notes())));

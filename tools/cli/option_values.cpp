@@ -71,7 +71,8 @@ std::vector<std::string> known_scenes() { return names_in(list_scenes(scene_sear
 
 void add_scene_argument(CLI::App& parser, std::string& scene) {
   add_argument(parser, "SCENE",
-               "Name of a scene (softfocus scenes), random:SEED, a .toml, .gltf, .glb or .obj file",
+               "Name of a scene (softfocus scenes), random:SEED, a .toml, .gltf, .glb, .obj, .ply "
+               "or .stl file",
                scene);
   offer(parser, "SCENE", known_scenes);
 }

@@ -163,6 +163,25 @@ TEST_CASE("fixed point: rows of 8-bit colour have the bits of the oracle") {
   }
 }
 
+TEST_CASE("fixed point: RGB565 in the other order of bytes is the same picture") {
+  Random random{3};
+  const auto swap_bytes = [](std::vector<std::uint8_t>& bytes) {
+    for (std::size_t i = 0; i + 1 < bytes.size(); i += 2) std::swap(bytes[i], bytes[i + 1]);
+  };
+  for (int i = 0; i < 60; ++i) {
+    const Lens lens = any_lens(random, 10);
+    const auto table = table8(lens, any_below(random, 3000000), any_below(random, 9000000));
+    PackedPicture picture = random_picture(
+        random, any_settings(random, lens, SOFTFOCUS_FIXED_RGB565, SOFTFOCUS_FIXED_DEPTH8));
+    std::vector<std::uint8_t> expected = filtered_rows(picture, table);
+    swap_bytes(expected);
+    swap_bytes(picture.colours);
+    picture.settings.colour = SOFTFOCUS_FIXED_RGB565_SWAPPED;
+    CAPTURE(i);
+    CHECK(filtered_rows(picture, table) == expected);
+  }
+}
+
 TEST_CASE("fixed point: codes of 16 bits and of halves have the bits of the oracle") {
   Random random{2};
   for (int i = 0; i < 10; ++i) {
@@ -255,7 +274,7 @@ TEST_CASE("fixed point: a stream with wrong settings, table or memory does not b
     CHECK(begin(settings, table) == SOFTFOCUS_FIXED_BAD_SIZE);
     CHECK(softfocus_fixed_memory(&settings) == 0);
   }
-  CHECK(begin(with([](Settings& s) { s.colour = 3; }), table) == SOFTFOCUS_FIXED_BAD_FORMAT);
+  CHECK(begin(with([](Settings& s) { s.colour = 4; }), table) == SOFTFOCUS_FIXED_BAD_FORMAT);
   CHECK(begin(with([](Settings& s) { s.depth = 3; }), table) == SOFTFOCUS_FIXED_BAD_FORMAT);
   CHECK(begin(with([](Settings& s) { s.depth = SOFTFOCUS_FIXED_DEPTH_IN_ALPHA; }), table) ==
         SOFTFOCUS_FIXED_BAD_FORMAT);

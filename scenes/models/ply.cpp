@@ -1,0 +1,437 @@
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "scenes/files/decimal.h"
+#include "scenes/files/scene_error.h"
+#include "scenes/models/model.h"
+#include "scenes/models/ply_stl.h"
+
+namespace softfocus {
+namespace {
+
+enum class NumberKind : std::uint8_t { whole, unsigned_whole, real };
+
+struct NumberType {
+  std::string_view name, also;
+  std::size_t bytes;
+  NumberKind kind;
+
+  // What a colour of 1 is.
+  double one() const {
+    if (kind == NumberKind::real) return 1.0;
+    const double values = std::ldexp(1.0, static_cast<int>(8 * bytes));
+    return kind == NumberKind::whole ? values / 2.0 - 1.0 : values - 1.0;
+  }
+};
+
+constexpr std::array<NumberType, 8> kTypes{{
+    {"char", "int8", 1, NumberKind::whole},
+    {"uchar", "uint8", 1, NumberKind::unsigned_whole},
+    {"short", "int16", 2, NumberKind::whole},
+    {"ushort", "uint16", 2, NumberKind::unsigned_whole},
+    {"int", "int32", 4, NumberKind::whole},
+    {"uint", "uint32", 4, NumberKind::unsigned_whole},
+    {"float", "float32", 4, NumberKind::real},
+    {"double", "float64", 8, NumberKind::real},
+}};
+
+struct Property {
+  std::string name;
+  const NumberType* type;
+  const NumberType* count_type;  // of a list; else null
+};
+
+struct Element {
+  std::string name;
+  std::size_t count;
+  std::vector<Property> properties{};
+};
+
+enum class Form : std::uint8_t { text, little_endian, big_endian };
+
+struct Reader {
+  std::string_view rest;
+  const std::string& file;
+  std::size_t line = 1;  // of text
+  Form form = Form::text;
+  std::string what{};  // is being read: "vertex 3"
+
+  [[noreturn]] void fail(const std::string& reason) const {
+    const std::string where = form == Form::text ? ":" + std::to_string(line) : "";
+    throw SceneError(file + where + ": " + (what.empty() ? "" : what + " ") + reason);
+  }
+
+  std::string_view word() {
+    std::size_t at = 0;
+    for (; at < rest.size() && static_cast<unsigned char>(rest[at]) <= ' '; ++at) {
+      if (rest[at] == '\n') ++line;
+    }
+    rest.remove_prefix(at);
+    at = 0;
+    while (at < rest.size() && static_cast<unsigned char>(rest[at]) > ' ') ++at;
+    const std::string_view found = rest.substr(0, at);
+    rest.remove_prefix(at);
+    if (found.empty()) fail("is missing: the file is cut off");
+    return found;
+  }
+
+  double number(const NumberType& type) {
+    if (form == Form::text) {
+      const std::string_view text = word();
+      // A float is rounded once; whole numbers are below 2^53.
+      std::optional<double> read;
+      if (type.bytes == 4 && type.kind == NumberKind::real) {
+        if (const auto single = decimal_to_float(text)) read = *single;
+      } else {
+        read = decimal_to_double(text);
+      }
+      if (!read) fail("has \"" + std::string{text.substr(0, 40)} + "\", which is no number");
+      return *read;
+    }
+    if (rest.size() < type.bytes) fail("is missing: the file is cut off");
+    std::uint64_t bits = 0;
+    for (std::size_t i = 0; i < type.bytes; ++i) {
+      const std::size_t at = form == Form::little_endian ? type.bytes - 1 - i : i;
+      bits = bits << 8 | static_cast<unsigned char>(rest[at]);
+    }
+    rest.remove_prefix(type.bytes);
+    if (type.kind == NumberKind::real) {
+      return type.bytes == 8 ? std::bit_cast<double>(bits)
+                             : std::bit_cast<float>(static_cast<std::uint32_t>(bits));
+    }
+    if (type.kind == NumberKind::unsigned_whole) return static_cast<double>(bits);
+    const std::uint64_t sign = std::uint64_t{1} << (8 * type.bytes - 1);
+    return static_cast<double>(bits & (sign - 1)) - static_cast<double>(bits & sign);
+  }
+};
+
+const NumberType& type_named(const Reader& reader, std::string_view name) {
+  for (const NumberType& type : kTypes) {
+    if (name == type.name || name == type.also) return type;
+  }
+  reader.fail(
+      "\"" + std::string{name.substr(0, 40)} +
+      "\" is no type; char, uchar, short, ushort, int, uint, float or double would be right");
+}
+
+struct Header {
+  std::vector<Element> elements{};
+  std::string texture{};
+};
+
+void read_property(const Reader& reader, std::string_view line, Header& header) {
+  if (header.elements.empty()) reader.fail("a property before the first element");
+  Property property{};
+  std::string_view type = next_word(line);
+  if (type == "list") {
+    property.count_type = &type_named(reader, next_word(line));
+    if (property.count_type->kind == NumberKind::real)
+      reader.fail("a list's length is no whole number");
+    type = next_word(line);
+  }
+  property.type = &type_named(reader, type);
+  property.name = next_word(line);
+  header.elements.back().properties.push_back(property);
+}
+
+void read_format(Reader& reader, Form& form, std::string_view line) {
+  const std::string_view name = next_word(line);
+  if (name == "ascii") {
+    form = Form::text;
+  } else if (name == "binary_little_endian") {
+    form = Form::little_endian;
+  } else if (name == "binary_big_endian") {
+    form = Form::big_endian;
+  } else {
+    reader.fail("\"" + std::string{name.substr(0, 40)} +
+                "\" is no format; ascii, binary_little_endian or binary_big_endian would be right");
+  }
+}
+
+Header read_header(Reader& reader) {
+  Header header;
+  Form form = Form::text;
+  bool has_format = false;
+  // As its first line ends, so do the others.
+  const std::size_t end = reader.rest.find_first_of("\r\n");
+  if (end == reader.rest.npos || trimmed(reader.rest.substr(0, end)) != "ply") {
+    reader.fail("is no PLY: the first line is not \"ply\"");
+  }
+  const std::string line_end{reader.rest.substr(end, reader.rest.substr(end, 2) == "\r\n" ? 2 : 1)};
+  for (;;) {
+    const std::size_t length = reader.rest.find(line_end);
+    if (length == reader.rest.npos) reader.fail("the header has no end; end_header is missing");
+    std::string_view line = reader.rest.substr(0, length);
+    reader.rest.remove_prefix(length + line_end.size());
+    const std::string_view keyword = next_word(line);
+    if (keyword == "end_header") break;
+    if (keyword == "format") {
+      read_format(reader, form, line);
+      has_format = true;
+    } else if (keyword == "element") {
+      const std::string_view name = next_word(line);
+      const std::string_view written = next_word(line);
+      std::size_t count = 0;
+      const auto [at, error] =
+          std::from_chars(written.data(), written.data() + written.size(), count);
+      if (error != std::errc{} || at != written.data() + written.size()) {
+        reader.fail("an element's count is no whole number");
+      }
+      header.elements.push_back({std::string{name}, count});
+    } else if (keyword == "property") {
+      read_property(reader, line, header);
+    } else if (keyword == "comment" && next_word(line) == "TextureFile" && header.texture.empty()) {
+      header.texture = trimmed(line);
+    }
+    ++reader.line;
+  }
+  if (!has_format) reader.fail("the header has no format");
+  ++reader.line;
+  reader.form = form;
+  return header;
+}
+
+// What a vertex's properties mean, by any of their names.
+enum Slot { kX, kY, kZ, kNx, kNy, kNz, kRed, kGreen, kBlue, kU, kV, kSlots };
+
+std::optional<Slot> slot_named(std::string_view name) {
+  for (const std::string_view prefix : {"diffuse_", "texture_"}) {
+    if (name.starts_with(prefix)) name.remove_prefix(prefix.size());
+  }
+  static const std::map<std::string_view, Slot> names{
+      {"x", kX},     {"y", kY},   {"z", kZ},     {"nx", kNx},       {"ny", kNy},     {"nz", kNz},
+      {"red", kRed}, {"r", kRed}, {"g", kGreen}, {"green", kGreen}, {"blue", kBlue}, {"b", kBlue},
+      {"s", kU},     {"u", kU},   {"t", kV},     {"v", kV}};
+  const auto found = names.find(name);
+  if (found == names.end()) return std::nullopt;
+  return found->second;
+}
+
+struct Growing {
+  ObjText obj{};
+  std::vector<glm::dvec3> positions{};
+  std::vector<glm::vec2> uvs{};  // of vertices
+  std::size_t short_faces = 0, wild_uvs = 0;
+  bool has_bright_colours = false;
+};
+
+// The numbers of a list, or past them.
+void read_list(Reader& reader, const Property& property, std::vector<double>* list) {
+  if (list != nullptr) list->clear();
+  for (double left = reader.number(*property.count_type); left > 0.0; --left) {
+    const double number = reader.number(*property.type);
+    if (list != nullptr) list->push_back(number);
+  }
+}
+
+void read_vertices(Reader& reader, const Element& element, Growing& made) {
+  std::vector<std::optional<Slot>> slots;
+  std::array<bool, kSlots> has{};
+  for (const Property& property : element.properties) {
+    std::optional<Slot> slot = property.count_type ? std::nullopt : slot_named(property.name);
+    if (slot && has[*slot]) slot.reset();
+    if (slot) has[*slot] = true;
+    slots.push_back(slot);
+  }
+  const auto has_all = [&](Slot first, int count) {
+    return std::all_of(has.begin() + first, has.begin() + first + count,
+                       [](bool is) { return is; });
+  };
+  if (!has_all(kX, 3)) throw SceneError(reader.file + ": the vertices have no x, y and z");
+  ObjText& obj = made.obj;
+  for (std::size_t i = 0; i < element.count; ++i) {
+    reader.what = "vertex " + std::to_string(i);
+    std::array<double, kSlots> values{};
+    for (std::size_t k = 0; k < slots.size(); ++k) {
+      const Property& property = element.properties[k];
+      if (property.count_type != nullptr) {
+        read_list(reader, property, nullptr);
+        continue;
+      }
+      const double value = reader.number(*property.type);
+      if (!slots[k]) continue;
+      const bool is_colour = *slots[k] >= kRed && *slots[k] <= kBlue;
+      values[*slots[k]] = is_colour ? value / property.type->one() : value;
+    }
+    const auto vector = [&](Slot first) {
+      return glm::dvec3{values[first], values[first + 1], values[first + 2]};
+    };
+    made.positions.push_back(vector(kX));
+    if (has_all(kNx, 3)) {
+      const glm::dvec3 n = vector(kNx);
+      const double square = n.x * n.x + n.y * n.y + n.z * n.z;
+      obj.normals.emplace_back(square > 0.0 && square < 1e30 ? n : glm::dvec3{0.0});
+    }
+    if (has_all(kRed, 3)) {
+      glm::vec3 colour{0.0f};
+      for (int k = 0; k < 3; ++k) {
+        const double share = vector(kRed)[k];
+        if (share > 0.0) colour[k] = static_cast<float>(std::min(share, 255.0));
+        made.has_bright_colours = made.has_bright_colours || colour[k] > 1.0f;
+      }
+      obj.colours.push_back(colour);
+    }
+    if (has_all(kU, 2)) {
+      const bool is_number = std::fabs(values[kU]) <= kLargestCoordinate &&
+                             std::fabs(values[kV]) <= kLargestCoordinate;
+      made.wild_uvs += is_number ? 0 : 1;
+      made.uvs.emplace_back(is_number ? static_cast<float>(values[kU]) : 0.0f,
+                            is_number ? static_cast<float>(values[kV]) : 0.0f);
+    }
+  }
+}
+
+std::int32_t index_of(const Reader& reader, double index) {
+  // That there are so many vertices is not known yet.
+  if (!(index >= 0.0 && index < 0x1p31 && index == std::floor(index))) {
+    reader.fail("has an index that is none");
+  }
+  return static_cast<std::int32_t>(index);
+}
+
+// `uvs`: of each corner, or none.
+void add_face(const Reader& reader, const std::vector<double>& indices,
+              const std::vector<double>& uvs, Growing& made) {
+  if (indices.size() < 3) {
+    ++made.short_faces;
+    return;
+  }
+  if (indices.size() > kMaxFaceCorners) {
+    reader.fail("has " + std::to_string(indices.size()) + " corners; up to " +
+                std::to_string(kMaxFaceCorners) + " would be right");
+  }
+  ObjText& obj = made.obj;
+  constexpr std::size_t kMostCorners = std::size_t{3} << 26;
+  if (obj.corners.size() + indices.size() > kMostCorners) reader.fail("is one face too many");
+  obj.faces.push_back({static_cast<std::uint32_t>(obj.corners.size()),
+                       static_cast<std::uint32_t>(indices.size()),
+                       obj.material_names.empty() ? -1 : 0});
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    ObjCorner corner{index_of(reader, indices[i])};
+    if (uvs.size() == 2 * indices.size()) {
+      glm::vec2 uv{static_cast<float>(uvs[2 * i]), static_cast<float>(uvs[2 * i + 1])};
+      if (!(std::fabs(uv.x) <= kLargestCoordinate && std::fabs(uv.y) <= kLargestCoordinate)) {
+        ++made.wild_uvs;
+        uv = glm::vec2{0.0f};
+      }
+      corner.uv = static_cast<std::int32_t>(obj.uvs.size());
+      obj.uvs.push_back(uv);
+    }
+    obj.corners.push_back(corner);
+  }
+}
+
+void add_strips(const Reader& reader, const std::vector<double>& indices, Growing& made) {
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    if (indices[i] < 0.0) {
+      first = i + 1;
+    } else if (i >= first + 2) {
+      const std::size_t odd = (i - first) % 2;
+      add_face(reader, {indices[i - 2 + odd], indices[i - 1 - odd], indices[i]}, {}, made);
+    }
+  }
+}
+
+void read_faces(Reader& reader, const Element& element, bool are_strips, Growing& made) {
+  std::vector<double> indices, uvs;
+  for (std::size_t i = 0; i < element.count; ++i) {
+    reader.what = element.name + " " + std::to_string(i);
+    indices.clear();
+    uvs.clear();
+    for (const Property& property : element.properties) {
+      if (property.count_type == nullptr) {
+        reader.number(*property.type);
+      } else if (property.name == "vertex_indices" || property.name == "vertex_index") {
+        read_list(reader, property, &indices);
+      } else {
+        read_list(reader, property, property.name == "texcoord" ? &uvs : nullptr);
+      }
+    }
+    if (are_strips) {
+      add_strips(reader, indices, made);
+    } else {
+      add_face(reader, indices, uvs, made);
+    }
+  }
+}
+
+void pass_over(Reader& reader, const Element& element) {
+  for (std::size_t i = 0; i < element.count && !element.properties.empty(); ++i) {
+    reader.what = element.name + " " + std::to_string(i);
+    for (const Property& property : element.properties) {
+      if (property.count_type != nullptr) {
+        read_list(reader, property, nullptr);
+      } else {
+        reader.number(*property.type);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+FileFaces parse_ply(std::string_view bytes, const std::string& file) {
+  Reader reader{bytes, file};
+  FileFaces result;
+  const Header header = read_header(reader);
+  result.texture = header.texture;
+  Growing made;
+  ObjText& obj = made.obj;
+  if (!header.texture.empty()) obj.material_names.push_back(header.texture);
+  for (const Element& element : header.elements) {
+    if (element.name == "vertex") {
+      if (!made.positions.empty()) reader.fail("vertices for the second time");
+      if (element.count > 0) read_vertices(reader, element, made);
+    } else if (element.name == "face" || element.name == "tristrips") {
+      if (!element.properties.empty()) {
+        read_faces(reader, element, element.name == "tristrips", made);
+      }
+    } else {
+      pass_over(reader, element);
+    }
+  }
+  if (obj.faces.empty()) {
+    throw SceneError(file + ": has no faces; points alone cannot be drawn, a mesh would be right");
+  }
+  // A vertex's normal and coordinates have its number, coordinates behind those of faces.
+  const bool has_normals = !obj.normals.empty(), has_uvs = !made.uvs.empty();
+  const auto first_uv = static_cast<std::int32_t>(obj.uvs.size());
+  obj.uvs.insert(obj.uvs.end(), made.uvs.begin(), made.uvs.end());
+  for (ObjCorner& corner : obj.corners) {
+    const auto number = static_cast<std::size_t>(corner.position);
+    if (number >= made.positions.size() || !is_position(made.positions[number])) {
+      throw SceneError(file + ": a face has vertex " + std::to_string(number) +
+                       (number < made.positions.size()
+                            ? ", a coordinate of which is no number, or beyond 1e9"
+                            : " of " + std::to_string(made.positions.size())));
+    }
+    if (has_normals) corner.normal = corner.position;
+    if (has_uvs && corner.uv < 0) corner.uv = first_uv + corner.position;
+  }
+  // Depth cameras leave vertices without a place, which no face has.
+  for (glm::dvec3& p : made.positions) {
+    if (!is_position(p)) p = glm::dvec3{0.0};
+  }
+  const auto warn = [&](std::size_t count, const char* what) {
+    if (count > 0) obj.warnings.push_back(file + ": " + std::to_string(count) + " " + what);
+  };
+  warn(made.short_faces, "faces of fewer than three corners are left out");
+  warn(made.wild_uvs, "texture coordinates are out of range, or none, and 0");
+  if (made.has_bright_colours) {
+    for (glm::vec3& colour : obj.colours) colour /= 255.0f;
+    obj.warnings.push_back(file + ": colours beyond 1: they are taken for 0 to 255");
+  }
+  result.faces = std::move(obj);
+  place_positions(made.positions, result);
+  return result;
+}
+
+}  // namespace softfocus
