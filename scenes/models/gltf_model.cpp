@@ -102,7 +102,8 @@ void add_camera_keys(GltfFile& file, const PlacedNode& at, Camera& camera) {
   if (last > kMostFrames) warn_gltf(file, "the camera stands still after ten minutes");
   const glm::dvec3 y{0.0, 1.0, 0.0};
   bool is_upright = true, rolls = false;
-  for (double frame = 0.0; frame <= std::min(last, kMostFrames); ++frame) {
+  for (int number = 0; number <= std::min(last, kMostFrames); ++number) {
+    const double frame = number;
     const glm::dmat4 to_world = multiply(matrix_at(*at.motion, frame), at.to_motion);
     const glm::dvec3 eye = glm::dvec3{to_world[3]} - file.model.origin;
     const glm::dvec3 target = eye - normalize(glm::dvec3{to_world[2]});

@@ -107,8 +107,9 @@ struct Reader {
                              : std::bit_cast<float>(static_cast<std::uint32_t>(bits));
     }
     if (type.kind == NumberKind::unsigned_whole) return static_cast<double>(bits);
-    const std::uint64_t sign = std::uint64_t{1} << (8 * type.bytes - 1);
-    return static_cast<double>(bits & (sign - 1)) - static_cast<double>(bits & sign);
+    if (type.bytes == 1) return static_cast<std::int8_t>(bits);
+    if (type.bytes == 2) return static_cast<std::int16_t>(bits);
+    return static_cast<std::int32_t>(bits);
   }
 };
 
@@ -199,16 +200,30 @@ Header read_header(Reader& reader) {
 }
 
 // What a vertex's properties mean, by any of their names.
-enum Slot { kX, kY, kZ, kNx, kNy, kNz, kRed, kGreen, kBlue, kU, kV, kSlots };
+enum Slot {
+  slot_x,
+  slot_y,
+  slot_z,
+  slot_nx,
+  slot_ny,
+  slot_nz,
+  slot_red,
+  slot_green,
+  slot_blue,
+  slot_u,
+  slot_v,
+  slot_count
+};
 
 std::optional<Slot> slot_named(std::string_view name) {
   for (const std::string_view prefix : {"diffuse_", "texture_"}) {
     if (name.starts_with(prefix)) name.remove_prefix(prefix.size());
   }
   static const std::map<std::string_view, Slot> names{
-      {"x", kX},     {"y", kY},   {"z", kZ},     {"nx", kNx},       {"ny", kNy},     {"nz", kNz},
-      {"red", kRed}, {"r", kRed}, {"g", kGreen}, {"green", kGreen}, {"blue", kBlue}, {"b", kBlue},
-      {"s", kU},     {"u", kU},   {"t", kV},     {"v", kV}};
+      {"x", slot_x},     {"y", slot_y},         {"z", slot_z},       {"nx", slot_nx},
+      {"ny", slot_ny},   {"nz", slot_nz},       {"red", slot_red},   {"r", slot_red},
+      {"g", slot_green}, {"green", slot_green}, {"blue", slot_blue}, {"b", slot_blue},
+      {"s", slot_u},     {"u", slot_u},         {"t", slot_v},       {"v", slot_v}};
   const auto found = names.find(name);
   if (found == names.end()) return std::nullopt;
   return found->second;
@@ -233,7 +248,7 @@ void read_list(Reader& reader, const Property& property, std::vector<double>* li
 
 void read_vertices(Reader& reader, const Element& element, Growing& made) {
   std::vector<std::optional<Slot>> slots;
-  std::array<bool, kSlots> has{};
+  std::array<bool, slot_count> has{};
   for (const Property& property : element.properties) {
     std::optional<Slot> slot = property.count_type ? std::nullopt : slot_named(property.name);
     if (slot && has[*slot]) slot.reset();
@@ -244,11 +259,11 @@ void read_vertices(Reader& reader, const Element& element, Growing& made) {
     return std::all_of(has.begin() + first, has.begin() + first + count,
                        [](bool is) { return is; });
   };
-  if (!has_all(kX, 3)) throw SceneError(reader.file + ": the vertices have no x, y and z");
+  if (!has_all(slot_x, 3)) throw SceneError(reader.file + ": the vertices have no x, y and z");
   ObjText& obj = made.obj;
   for (std::size_t i = 0; i < element.count; ++i) {
     reader.what = "vertex " + std::to_string(i);
-    std::array<double, kSlots> values{};
+    std::array<double, slot_count> values{};
     for (std::size_t k = 0; k < slots.size(); ++k) {
       const Property& property = element.properties[k];
       if (property.count_type != nullptr) {
@@ -257,33 +272,33 @@ void read_vertices(Reader& reader, const Element& element, Growing& made) {
       }
       const double value = reader.number(*property.type);
       if (!slots[k]) continue;
-      const bool is_colour = *slots[k] >= kRed && *slots[k] <= kBlue;
+      const bool is_colour = *slots[k] >= slot_red && *slots[k] <= slot_blue;
       values[*slots[k]] = is_colour ? value / property.type->one() : value;
     }
     const auto vector = [&](Slot first) {
       return glm::dvec3{values[first], values[first + 1], values[first + 2]};
     };
-    made.positions.push_back(vector(kX));
-    if (has_all(kNx, 3)) {
-      const glm::dvec3 n = vector(kNx);
+    made.positions.push_back(vector(slot_x));
+    if (has_all(slot_nx, 3)) {
+      const glm::dvec3 n = vector(slot_nx);
       const double square = n.x * n.x + n.y * n.y + n.z * n.z;
       obj.normals.emplace_back(square > 0.0 && square < 1e30 ? n : glm::dvec3{0.0});
     }
-    if (has_all(kRed, 3)) {
+    if (has_all(slot_red, 3)) {
       glm::vec3 colour{0.0f};
       for (int k = 0; k < 3; ++k) {
-        const double share = vector(kRed)[k];
+        const double share = vector(slot_red)[k];
         if (share > 0.0) colour[k] = static_cast<float>(std::min(share, 255.0));
         made.has_bright_colours = made.has_bright_colours || colour[k] > 1.0f;
       }
       obj.colours.push_back(colour);
     }
-    if (has_all(kU, 2)) {
-      const bool is_number = std::fabs(values[kU]) <= kLargestCoordinate &&
-                             std::fabs(values[kV]) <= kLargestCoordinate;
+    if (has_all(slot_u, 2)) {
+      const bool is_number = std::fabs(values[slot_u]) <= kLargestCoordinate &&
+                             std::fabs(values[slot_v]) <= kLargestCoordinate;
       made.wild_uvs += is_number ? 0 : 1;
-      made.uvs.emplace_back(is_number ? static_cast<float>(values[kU]) : 0.0f,
-                            is_number ? static_cast<float>(values[kV]) : 0.0f);
+      made.uvs.emplace_back(is_number ? static_cast<float>(values[slot_u]) : 0.0f,
+                            is_number ? static_cast<float>(values[slot_v]) : 0.0f);
     }
   }
 }
