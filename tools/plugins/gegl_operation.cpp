@@ -32,7 +32,8 @@ GeglOperationClass* parent_class(GeglOperation* operation) {
 }
 
 // Properties, in the order in which GIMP shows them.
-constexpr guint kMethod = 1, kEncoding = 2, kFirstNumber = 3, kHoles = 101, kMendEdges = 102;
+constexpr guint kMethodId = 1, kEncodingId = 2, kFirstNumberId = 3, kHolesId = 101,
+                kMendEdgesId = 102;
 
 /// "F-number", "Focal length, mm".
 std::string label_of(std::string_view name, std::string_view unit = {}) {
@@ -85,9 +86,9 @@ void install_choice(GObjectClass* object_class, guint id, const PluginChoice& ch
 
 std::size_t* choice_at(PluginSettings& settings, guint id) {
   switch (id) {
-    case kMethod: return &settings.method;
-    case kEncoding: return &settings.encoding;
-    case kHoles: return &settings.holes;
+    case kMethodId: return &settings.method;
+    case kEncodingId: return &settings.encoding;
+    case kHolesId: return &settings.holes;
     default: return nullptr;
   }
 }
@@ -96,10 +97,10 @@ void set_property(GObject* object, guint id, const GValue* value, GParamSpec*) {
   PluginSettings& settings = settings_of(object);
   if (std::size_t* const choice = choice_at(settings, id)) {
     *choice = static_cast<std::size_t>(g_value_get_enum(value));
-  } else if (id == kMendEdges) {
+  } else if (id == kMendEdgesId) {
     settings.mend_edges = g_value_get_boolean(value) != FALSE;
   } else {
-    double& number = settings.numbers[id - kFirstNumber];
+    double& number = settings.numbers[id - kFirstNumberId];
     number = G_VALUE_HOLDS_INT(value) ? g_value_get_int(value) : g_value_get_double(value);
   }
 }
@@ -108,12 +109,12 @@ void get_property(GObject* object, guint id, GValue* value, GParamSpec*) {
   PluginSettings& settings = settings_of(object);
   if (const std::size_t* const choice = choice_at(settings, id)) {
     g_value_set_enum(value, static_cast<int>(*choice));
-  } else if (id == kMendEdges) {
+  } else if (id == kMendEdgesId) {
     g_value_set_boolean(value, settings.mend_edges ? TRUE : FALSE);
   } else if (G_VALUE_HOLDS_INT(value)) {
-    g_value_set_int(value, static_cast<int>(settings.numbers[id - kFirstNumber]));
+    g_value_set_int(value, static_cast<int>(settings.numbers[id - kFirstNumberId]));
   } else {
-    g_value_set_double(value, settings.numbers[id - kFirstNumber]);
+    g_value_set_double(value, settings.numbers[id - kFirstNumberId]);
   }
 }
 
@@ -236,16 +237,15 @@ void init_class(gpointer own, gpointer) {
   object_class->set_property = set_property;
   object_class->get_property = get_property;
   object_class->finalize = finalize;
-  install_choice(object_class, kMethod, plugin_methods());
-  install_choice(object_class, kEncoding, plugin_encodings());
-  guint id = kFirstNumber;
+  install_choice(object_class, kMethodId, plugin_methods());
+  install_choice(object_class, kEncodingId, plugin_encodings());
+  guint id = kFirstNumberId;
   for (const PluginNumber& number : plugin_numbers()) install_number(object_class, id++, number);
-  install_choice(object_class, kHoles, plugin_holes());
+  install_choice(object_class, kHolesId, plugin_holes());
+  const std::string mends{plugin_mend_edges()};
   g_object_class_install_property(
-      object_class, kMendEdges,
-      g_param_spec_boolean("mend-edges", "Mend edges",
-                           "Depth between two surfaces becomes that of one of them", FALSE,
-                           kFlags));
+      object_class, kMendEdgesId,
+      g_param_spec_boolean("mend-edges", "Mend edges", mends.c_str(), FALSE, kFlags));
 
   auto* const operation_class = GEGL_OPERATION_CLASS(own);
   operation_class->prepare = prepare;

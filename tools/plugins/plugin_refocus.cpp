@@ -228,12 +228,14 @@ void refocus(const PluginSettings& settings, PluginFrame& frame) {
     dof.coc = *finer;
     take(colours);
   }
-  const Image result = apply(*method, {picture, dof, {}}, pool);
+  DofInput input{picture, dof, {}};
+  input.kept = frame.kept;
+  const Image result = apply(*method, input, pool);
   bool is_transparent = false;
   for (std::size_t i = 3; i < frame.rgba.size(); i += 4) is_transparent |= frame.rgba[i] < 1.0f;
   if (is_transparent) {
     take(opacity);
-    unpack(apply(*method, {picture, dof, {}}, pool), opacity, pool);
+    unpack(apply(*method, input, pool), opacity, pool);
     for (std::size_t i = 3; i < frame.rgba.size(); i += 4) {
       frame.rgba[i] = std::clamp(frame.rgba[i], 0.0f, 1.0f);
     }
@@ -269,6 +271,10 @@ const PluginChoice& plugin_holes() {
   static const PluginChoice choice =
       choice_of("holes", "What is not known of the depth", kHoles, "background");
   return choice;
+}
+
+std::string_view plugin_mend_edges() {
+  return "Depth between two surfaces becomes that of one of them";
 }
 
 PluginSettings::PluginSettings()

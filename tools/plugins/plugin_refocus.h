@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "dof/dof.h"
 #include "raster/numbers/parameter.h"
 #include "tools/pictures/picture_file.h"
 
@@ -29,6 +30,7 @@ struct PluginChoice {
 const PluginChoice& plugin_methods();
 const PluginChoice& plugin_encodings();
 const PluginChoice& plugin_holes();
+std::string_view plugin_mend_edges();  ///< the text of that switch
 
 /// Values of all controls; at first their presets.
 struct PluginSettings {
@@ -48,6 +50,7 @@ struct PluginFrame {
   std::vector<float> codes{};     ///< of the depth, as stored: whole numbers up to 255 of 8 bits
   std::vector<float> is_known{};  ///< 0: nothing is known of the depth; or empty
   NumberType type = NumberType::single;  ///< of the codes
+  KeptPart kept{};                       ///< what of the result is wanted
 };
 
 /// Refocuses a frame, whose codes are used up. With the same settings and numbers the bits are
