@@ -260,7 +260,7 @@ void init_class(gpointer own, gpointer) {
   composer_class->aux_label = "Depth";
   composer_class->aux_description = "The depth of each pixel; depth-encoding says how";
   gegl_operation_class_set_keys(operation_class, "name", "softfocus:refocus", "title",
-                                "Depth of field (softfocus)", "categories", "blur", "description",
+                                "Depth of Field", "categories", "blur", "description",
                                 "Gives a picture with depth the depth of field of a lens", nullptr);
 }
 
