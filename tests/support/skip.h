@@ -13,7 +13,7 @@
 
 namespace softfocus {
 
-/// `needed` is one of driver, embree, numpy, groff, bash, zsh, fish, terminal,
+/// `needed` is one of driver, embree, numpy, gegl, groff, bash, zsh, fish, terminal,
 /// full-device, other-user; empty if it cannot be asked for, as what another build tests. `why` is
 /// for a person.
 inline void skip(const std::string& needed, std::string_view why) {

@@ -111,27 +111,6 @@ float light_of(NumberType type, float value) {
 
 }  // namespace
 
-std::string_view name_of(NumberType type) {
-  switch (type) {
-    case NumberType::unsigned8: return "8 bits";
-    case NumberType::unsigned16: return "16 bits";
-    case NumberType::unsigned32: return "32 bits";
-    case NumberType::half: return "half";
-    case NumberType::single: return "float";
-    case NumberType::double_precision: return "double";
-  }
-  return "";
-}
-
-double full_scale(NumberType type) {
-  switch (type) {
-    case NumberType::unsigned8: return 255.0;
-    case NumberType::unsigned16: return 65535.0;
-    case NumberType::unsigned32: return 4294967295.0;
-    default: return 1.0;
-  }
-}
-
 void check_picture_size(std::string_view kind, std::int64_t width, std::int64_t height,
                         int most_rows) {
   if (width >= 1 && height >= 1 && width <= kMaxImageSize && height <= most_rows) return;
