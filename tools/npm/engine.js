@@ -4,13 +4,14 @@
 const kMostThreads = 16;
 const kIsNode = typeof process === "object" && typeof process.versions?.node === "string";
 
-// Written out, so that bundlers find them.
+// Written out, so that bundlers find them. `?no-inline`: vite would make a small file a data: URL, from
+// which no thread starts.
 const kModules = {
   threads: {
     load: () => import("./browser/softfocus-npm-threads.js"),
     script: new URL("./module/softfocus-npm-threads.js", import.meta.url),
     wasm: new URL("./module/softfocus-npm-threads.wasm", import.meta.url),
-    worker: new URL("./module/softfocus-npm-threads.worker.js", import.meta.url),
+    worker: new URL("./module/softfocus-npm-threads.worker.js?no-inline", import.meta.url),
   },
   simd: {
     load: () => import("./browser/softfocus-npm-simd.js"),

@@ -133,6 +133,7 @@ export function render(scene, { files = {}, ...options } = {}) {
   return job((engine) => {
     const words = ["render", scene, "--output", kRendered, "--json", ...words_of(options)];
     const { made, json } = answer(engine, words, files);
+    if (!made[kRendered]) refuse("this makes no picture, or several; run() is for that");
     return { ...frame_of(made[kRendered]), hash: json.pictureHash };
   });
 }
