@@ -13,7 +13,7 @@ set(order
   scenes/surface_splatting scenes/lens_views/lens_view_method.cpp scenes/auto scenes/frame scenes/scenes.h
   tools/cli tools/files tools/pictures tools/gl/driver/functions.h tools/gl/driver/api.h tools/gl/driver/driver.h tools/gl/emulated tools/gl/driver tools/gl tools/options tools/info tools/sequence tools/render tools/relief tools/refocus/depth tools/refocus tools/plugins tools/effects tools/compare tools/bench
   tools/golden tools/report tools/chart tools/chart/contenders tools/chart/report tools/chart/subject.cpp tools/chart/command.cpp tools/stress/cases tools/stress tools/goldens
-  tools/crosscheck tools/boards tools/page tools)
+  tools/crosscheck tools/boards tools/page tools/program.h tools/program.cpp tools/npm tools)
 
 # place_of(PATH VARIABLE): the number of its entry, or -1. A path is looked up once.
 function(place_of path variable)
