@@ -5,6 +5,7 @@
 """
 
 import os
+import shlex
 import tempfile
 import textwrap
 
@@ -46,12 +47,12 @@ class Settings(bpy.types.PropertyGroup):
 
 
 def telling(execute):
-    """A ValueError, which has a sentence, is the operator's."""
+    """What is raised becomes the operator's report."""
 
     def told(self, context):
         try:
             return execute(self, context)
-        except (ValueError, RuntimeError) as error:
+        except (ValueError, RuntimeError, OSError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
 
@@ -73,6 +74,9 @@ class Refocus(bpy.types.Operator):
         if self.render:
             passes.render_sharp(scene, context.view_layer)
         colour, depth = passes.read_passes(scene, context.view_layer)
+        height, width = depth.shape
+        if (width, height) != (lens.width, lens.height):
+            raise ValueError(f"The last render has {width}x{height} pixels, the scene {lens.width}x{lens.height}")
         options = ["--unmix-edges"] if settings.unmix_edges else []
         result = passes.refocused(colour, depth, lens, settings.method, options)
         image = passes.show(context, "Softfocus", result)
@@ -100,7 +104,7 @@ class Export(bpy.types.Operator):
         words, warnings = scene_file.export_scene(context.scene, read_lens(context.scene), path)
         for warning in warnings:
             self.report({"WARNING"}, warning)
-        self.report({"INFO"}, f"softfocus render {path} -o out.png {' '.join(words)}")
+        self.report({"INFO"}, f"softfocus render {shlex.quote(path)} -o out.png {' '.join(words)}")
         return {"FINISHED"}
 
 

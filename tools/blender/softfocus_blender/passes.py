@@ -75,6 +75,9 @@ def read_exr(path, names):
 
 def read_passes(scene, view_layer):
     """The last render's colour, multiplied by its alpha, (h, w, 4), and depth, (h, w)."""
+    render = next((image for image in bpy.data.images if image.type == "RENDER_RESULT"), None)
+    if render is None:
+        raise ValueError("There is no render yet")
     settings = scene.render.image_settings
     with tempfile.TemporaryDirectory(prefix="softfocus-") as folder:
         path = os.path.join(folder, "passes.exr")
@@ -86,7 +89,7 @@ def read_passes(scene, view_layer):
             (settings, "exr_codec", "NONE"),
             (settings, "use_exr_interleave", True),  # one part; since Blender 5
         ):
-            bpy.data.images["Render Result"].save_render(path, scene=scene)
+            render.save_render(path, scene=scene)
         layer = view_layer.name
         *colour, depth = read_exr(path, [f"{layer}.Combined.{c}" for c in "RGBA"] + [f"{layer}.Depth.Z"])
     return numpy.dstack(colour), depth

@@ -1,8 +1,9 @@
-"""A scene for `softfocus render`: a .toml with camera, lens and lamps, beside a .glb by Blender's exporter."""
+"""A scene for `softfocus render`: a .toml with camera, lens and lamps, beside a .glb by Blender."""
 
 import json
 import math
 import os
+import shlex
 
 import bpy
 
@@ -16,15 +17,21 @@ GLTF = {
     "export_gn_mesh": True,
     "export_animations": False,
     "export_current_frame": True,
-    "export_skins": False,
-    "export_morph": False,
+    "export_skins": False,  # applied
     "export_cameras": False,
     "export_lights": False,
 }
 
 
+MOST_LIGHTS = 64  # of a scene file
+
+
 def vector(numbers):
     return "[" + ", ".join(f"{number:.7g}" for number in numbers) + "]"
+
+
+def colour(channels, times=1.0):
+    return vector(min(max(channel * times, 0.0), 1000.0) for channel in channels)
 
 
 def place(point):
@@ -34,34 +41,32 @@ def place(point):
 
 def background(world, warnings):
     """The world's colour, as light."""
-    if world is None:
-        return (0.0, 0.0, 0.0)
-    node = world.node_tree and next((n for n in world.node_tree.nodes if n.type == "BACKGROUND"), None)
+    node = world and world.node_tree and next((n for n in world.node_tree.nodes if n.type == "BACKGROUND"), None)
     if not node:
-        return world.color
-    colour, strength = node.inputs["Color"], node.inputs["Strength"]
-    if colour.is_linked or strength.is_linked:
+        return colour(world.color if world else (0.0, 0.0, 0.0))
+    if node.inputs["Color"].is_linked or node.inputs["Strength"].is_linked:
         warnings.append("the world has one colour, and no texture")
-    return [channel * strength.default_value for channel in colour.default_value[:3]]
+    return colour(node.inputs["Color"].default_value[:3], node.inputs["Strength"].default_value)
 
 
-def light(thing, seen, warnings):
+def light(lamp, seen, warnings):
     """A lamp without falloff, as bright at the point in focus as Blender's is there."""
-    data, position = thing.data, thing.matrix_world.translation
-    backwards = thing.matrix_world.to_3x3().col[2].normalized()  # to where it does not shine
+    data, position = lamp.data, lamp.matrix_world.translation
+    backwards = lamp.matrix_world.to_3x3().col[2].normalized()  # to where it does not shine
     way = position - seen
+    square_m2 = max(way.length_squared, 1e-6)
     watts_per_m2 = data.energy
     if data.type == "AREA":  # by Lambert's law
-        watts_per_m2 *= max(backwards.dot(way.normalized()), 0.0) / (math.pi * way.length_squared)
+        watts_per_m2 *= max(backwards.dot(way.normalized()), 0.0) / (math.pi * square_m2)
     elif data.type != "SUN":
-        watts_per_m2 /= 4.0 * math.pi * way.length_squared
+        watts_per_m2 /= 4.0 * math.pi * square_m2
     if data.type in ("AREA", "SPOT"):
-        warnings.append(f"{thing.name} shines in all directions")
+        warnings.append(f"{lamp.name} shines in all directions")
     if data.type == "SUN":
         where = f'kind = "directional"\ndirection = {place(backwards)}'
     else:
         where = f'kind = "point"\nposition = {place(position)}'
-    return f"[[light]]\n{where}\ncolour = {vector(c * watts_per_m2 / math.pi for c in data.color)}\n"
+    return f"[[light]]\n{where}\ncolour = {colour(data.color, watts_per_m2 / math.pi)}\n"
 
 
 def export_scene(scene, lens, path):
@@ -80,13 +85,16 @@ def export_scene(scene, lens, path):
         warnings.append("the camera's shift is left out")
     if lens.anamorphic != 1.0:
         warnings.append("accumulation has no anamorphic lens")
-    lamps = [thing for thing in scene.objects if thing.type == "LIGHT" and not thing.hide_render]
-    sky = vector(background(scene.world, warnings))
+    things = bpy.context.view_layer.objects
+    lamps = [thing for thing in things if thing.type == "LIGHT" and not thing.hide_render]
+    if len(lamps) > MOST_LIGHTS:
+        warnings.append(f"of {len(lamps)} lamps {MOST_LIGHTS} shine")
+    sky = background(scene.world, warnings)
     words = ["--method", "accumulation", "--jitter", "--size", f"{lens.width}x{lens.height}"]
     words += lens.aperture_words("accumulation")
     with open(path, "w", encoding="utf-8") as file:
         file.write(
-            f"""# softfocus render {os.path.basename(path)} -o out.png {' '.join(words)}
+            f"""# softfocus render {shlex.quote(os.path.basename(path))} -o out.png {' '.join(words)}
 title = {json.dumps(scene.name)}
 background = {sky}
 ambient_light = {sky}
@@ -110,6 +118,6 @@ shape = "model"
 file = {json.dumps(os.path.basename(model))}
 
 """
-            + "\n".join(light(lamp, seen, warnings) for lamp in lamps)
+            + "\n".join(light(lamp, seen, warnings) for lamp in lamps[:MOST_LIGHTS])
         )
     return words, warnings
