@@ -134,35 +134,27 @@ class Panel(bpy.types.Panel):
     bl_context = "render"
 
     def draw(self, context):
-        scene, layout = context.scene, self.layout
-        settings = scene.softfocus
+        layout, settings = self.layout, context.scene.softfocus
+        text = layout.column(align=True)
 
-        def tell(text, **icon):
-            for line in textwrap.wrap(text, max(context.region.width // 9, 20)):
-                layout.label(text=line, **icon)
-                icon = {}
+        def tell(sentence):
+            letter_px = 7 * context.preferences.system.ui_scale
+            for line in textwrap.wrap(sentence, max(int(context.region.width / letter_px) - 5, 10)):
+                text.label(text=line)
 
         try:
-            lens = read_lens(scene)
+            lens = read_lens(context.scene)
         except ValueError as error:
-            tell(str(error), icon="ERROR")
-            return
-        layout.prop(settings, "method")
-        layout.prop(settings, "unmix_edges")
-        tell(
-            f"{lens.focal_length_mm:.4g} mm, f/{lens.f_number:.3g}, focus at {lens.focus_m:.4g} m, "
-            f"{lens.fov_y_degrees:.4g}° high",
-            icon="CAMERA_DATA",
-        )
+            return tell(str(error))
+        tell(f"{lens.focal_length_mm:.4g} mm, f/{lens.f_number:.3g}, focus at {lens.focus_m:.4g} m")
         if not lens.is_round() and settings.method != "scatter-aperture":
-            tell("The aperture is round; scatter-aperture has the camera's blades and ratio", icon="INFO")
+            tell("Round: only scatter-aperture has blades and a ratio")
+        layout.prop(settings, "method", text="")
+        layout.prop(settings, "unmix_edges")
         layout.operator("softfocus.refocus")
         layout.operator("softfocus.refocus", text="Refocus Last Render").render = False
-        if scene.camera.data.dof.use_dof:
-            tell("Blender's own depth of field is on; Render and Refocus leaves it out", icon="INFO")
-        row = layout.row()
-        row.operator("softfocus.export")
-        row.operator("softfocus.truth")
+        layout.operator("softfocus.export")
+        layout.operator("softfocus.truth")
 
 
 CLASSES = (Settings, Refocus, Export, Truth, Panel)
