@@ -106,6 +106,7 @@ def pixels_of(image):
 def check_refocus(scene, folder):
     """The image has the bits of `softfocus refocus` of Blender's own multi-layer EXR."""
     settings, camera = scene.render.image_settings, scene.camera.data
+    bpy.context.view_layer.use_pass_normal = True
     scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 128, 96, 50
     fov = 2 * math.degrees(math.atan(30.0 / 80.0 * 48 / 64))
     axis = scene.camera.matrix_world.to_3x3().col[2].normalized()
@@ -123,13 +124,14 @@ def check_refocus(scene, folder):
         camera.dof.aperture_rotation = math.radians(30) if is_shaped else 0
         camera.dof.aperture_ratio = 2 if is_shaped else 1
         settings.file_format, settings.color_depth = "PNG", "8"
+        scene.render.use_stamp = True
         file = f"{folder}/view.png" if is_shaped else ""
         assert bpy.ops.softfocus.refocus(render=method == "disc-layers", filepath=file) == {"FINISHED"}
         assert not file or os.path.getsize(file) > 0
         assert camera.dof.use_dof and settings.file_format == "PNG" and settings.color_depth == "8"
-        settings.file_format, settings.color_depth = "OPEN_EXR_MULTILAYER", "32"
+        settings.file_format, settings.color_depth, scene.render.use_stamp = "OPEN_EXR_MULTILAYER", "32", False
         bpy.data.images["Render Result"].save_render(f"{folder}/passes.exr", scene=scene)
-        words = f"-o {folder}/theirs.exr --format exr-float --method {method} {lens} {options}".split()
+        words = f"-o {folder}/theirs.exr --format exr-float --no-layers --method {method} {lens} {options}".split()
         program("refocus", f"{folder}/passes.exr", *words, "--quiet")
         theirs = bpy.data.images.load(f"{folder}/theirs.exr")
         theirs.colorspace_settings.name = "Non-Color"

@@ -33,7 +33,7 @@ def render_sharp(scene, view_layer):
     """Renders the whole picture without Blender's own lens, with depth."""
     view_layer.use_pass_z = True
     render = scene.render
-    names = ("use_border", "use_compositing", "use_sequencer", "use_multiview")
+    names = ("use_border", "use_compositing", "use_sequencer", "use_multiview", "use_stamp")
     with changed((scene.camera.data.dof, "use_dof", False), *((render, name, False) for name in names)):
         bpy.ops.render.render(scene=scene.name)
 
