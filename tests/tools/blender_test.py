@@ -31,8 +31,9 @@ def start_blender(program, library, *add_on):
             if "blender" in os.environ.get("SOFTFOCUS_REQUIRE", "").split(","):
                 sys.exit(f"SOFTFOCUS_REQUIRE has blender, but: {why}")
             return print(f"skipped: the add-on in Blender ({why})")
-        environment = {**os.environ, "TEST_PROGRAM": os.path.abspath(program), "PYTHONDONTWRITEBYTECODE": "1"}
-        environment |= {f"BLENDER_USER_{name}": f"{folder}/{name}" for name in ("CONFIG", "SCRIPTS", "DATAFILES")}
+        environment = {**os.environ, "TEST_PROGRAM": os.path.abspath(program)}
+        environment |= {"PYTHONDONTWRITEBYTECODE": "1"}
+        environment |= {f"BLENDER_USER_{name}": f"{folder}/{name}" for name in ("CONFIG", "SCRIPTS")}
         if not add_on:
             environment |= {"SOFTFOCUS_PROGRAM": os.path.abspath(program)}
             environment |= {"SOFTFOCUS_LIBRARY": os.path.abspath(library)}
@@ -40,7 +41,7 @@ def start_blender(program, library, *add_on):
         words += map(os.path.abspath, add_on)
         run = subprocess.run(["blender", *words], env=environment, capture_output=True, text=True)
         if run.returncode != 0:
-            said = [line for line in run.stdout.splitlines() if not line.startswith("Fra:")]
+            said = [line for line in run.stdout.splitlines() if "Fra:" not in line and "INFO:" not in line]
             sys.exit("\n".join(said) + run.stderr)
 
 
@@ -67,10 +68,10 @@ def draw_scene():
         thing.name = name
         material = bpy.data.materials.new(name)
         material.use_nodes = True
-        shader = material.node_tree.nodes["Principled BSDF"]
-        shader.inputs["Base Color"].default_value = (0.0, 0.0, 0.0, 1.0)
-        shader.inputs["Emission" if "Emission" in shader.inputs else "Emission Color"].default_value = (*colour, 1.0)
-        shader.inputs["Emission Strength"].default_value = 1.0
+        inputs = material.node_tree.nodes["Principled BSDF"].inputs
+        inputs["Base Color"].default_value = (0.0, 0.0, 0.0, 1.0)
+        inputs["Emission" if "Emission" in inputs else "Emission Color"].default_value = (*colour, 1.0)
+        inputs["Emission Strength"].default_value = 1.0
         thing.data.materials.append(material)
         return thing
 
@@ -106,8 +107,9 @@ def pixels_of(image):
 def check_refocus(scene, folder):
     """The image has the bits of `softfocus refocus` of Blender's own multi-layer EXR."""
     settings, camera = scene.render.image_settings, scene.camera.data
-    bpy.context.view_layer.use_pass_normal = True
-    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 128, 96, 50
+    bpy.context.view_layer.use_pass_normal = scene.render.use_stamp = True
+    scene.render.resolution_x, scene.render.resolution_y = 128, 96
+    scene.render.resolution_percentage = 50
     fov = 2 * math.degrees(math.atan(30.0 / 80.0 * 48 / 64))
     axis = scene.camera.matrix_world.to_3x3().col[2].normalized()
     focus = axis.dot(scene.camera.location - bpy.data.objects["focus"].location)
@@ -124,12 +126,11 @@ def check_refocus(scene, folder):
         camera.dof.aperture_rotation = math.radians(30) if is_shaped else 0
         camera.dof.aperture_ratio = 2 if is_shaped else 1
         settings.file_format, settings.color_depth = "PNG", "8"
-        scene.render.use_stamp = True
         file = f"{folder}/view.png" if is_shaped else ""
         assert bpy.ops.softfocus.refocus(render=method == "disc-layers", filepath=file) == {"FINISHED"}
         assert not file or os.path.getsize(file) > 0
         assert camera.dof.use_dof and settings.file_format == "PNG" and settings.color_depth == "8"
-        settings.file_format, settings.color_depth, scene.render.use_stamp = "OPEN_EXR_MULTILAYER", "32", False
+        settings.file_format, settings.color_depth = "OPEN_EXR_MULTILAYER", "32"
         bpy.data.images["Render Result"].save_render(f"{folder}/passes.exr", scene=scene)
         words = f"-o {folder}/theirs.exr --format exr-float --no-layers --method {method} {lens} {options}".split()
         program("refocus", f"{folder}/passes.exr", *words, "--quiet")
@@ -158,6 +159,30 @@ def check_export(scene, folder):
         error = abs(theirs[..., 3] / depth - 1)[thing & seen]
         assert numpy.percentile(error, 98) < 1e-3, error
         assert abs(theirs[..., :3] - colour[..., :3])[thing & seen].mean() < 0.02
+
+
+def check_lamps(scene):
+    """A grey floor under each kind of lamp is as bright as in Blender, in the middle."""
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=40, y_subdivisions=40, size=8, location=(50, 0, 0))
+    floor = bpy.data.materials.new("grey")
+    floor.use_nodes = True
+    inputs = floor.node_tree.nodes["Principled BSDF"].inputs
+    inputs["Specular" if "Specular" in inputs else "Specular IOR Level"].default_value = 0.0
+    inputs["Base Color"].default_value, inputs["Roughness"].default_value = (0.5, 0.5, 0.5, 1.0), 1.0
+    bpy.context.object.data.materials.append(floor)
+    bpy.ops.object.camera_add(location=(50, 0, 5))
+    scene.camera = bpy.context.object
+    scene.camera.data.dof.focus_distance = 5.0
+    scene.cycles.samples = 64
+    for kind, watts in (("POINT", 100.0), ("SUN", 2.0), ("AREA", 60.0), ("SPOT", 120.0)):
+        bpy.ops.object.light_add(type=kind, location=(50.5, 0.5, 3), rotation=(-0.2, 0, 0))
+        lamp = bpy.context.object
+        lamp.data.energy = watts
+        bpy.ops.softfocus.refocus()
+        bpy.ops.softfocus.truth()
+        theirs, ours = [pixels_of(bpy.data.images["Softfocus" + name])[32, 20, 1] for name in ("", " Truth")]
+        assert abs(ours / theirs - 1) < 0.1, (kind, ours, theirs)
+        bpy.data.objects.remove(lamp)
 
 
 def check_refusals(scene):
@@ -199,4 +224,5 @@ else:
 drawn = draw_scene()
 check_refocus(drawn, work)
 check_export(drawn, work)
+check_lamps(drawn)
 check_refusals(drawn)

@@ -41,7 +41,8 @@ def place(point):
 
 def background(world, warnings):
     """The world's colour, as light."""
-    node = world and world.node_tree and next((n for n in world.node_tree.nodes if n.type == "BACKGROUND"), None)
+    nodes = world.node_tree.nodes if world and world.node_tree else []
+    node = next((node for node in nodes if node.type == "BACKGROUND"), None)
     if not node:
         return colour(world.color if world else (0.0, 0.0, 0.0))
     if node.inputs["Color"].is_linked or node.inputs["Strength"].is_linked:
@@ -56,8 +57,8 @@ def light(lamp, seen, warnings):
     way = position - seen
     square_m2 = max(way.length_squared, 1e-6)
     watts_per_m2 = data.energy
-    if data.type == "AREA":  # by Lambert's law
-        watts_per_m2 *= max(backwards.dot(way.normalized()), 0.0) / (math.pi * square_m2)
+    if data.type == "AREA":  # in Cycles of a quarter of its watts over its area, whatever the direction
+        watts_per_m2 *= max(backwards.dot(way.normalized()), 0.0) / (4.0 * square_m2)
     elif data.type != "SUN":
         watts_per_m2 /= 4.0 * math.pi * square_m2
     if data.type in ("AREA", "SPOT"):
