@@ -64,8 +64,9 @@ class Refocus(bpy.types.Operator):
 
     bl_idname = "softfocus.refocus"
     bl_label = "Render and Refocus"
-    render: BoolProperty(description="Or take the last render", default=True)
-    filepath: StringProperty(description="Also written, in the output's format", subtype="FILE_PATH")
+    # A button without them would take those of the last call.
+    render: BoolProperty(description="Or take the last render", default=True, options={"SKIP_SAVE"})
+    filepath: StringProperty(description="Also written, in the output's format", options={"SKIP_SAVE"})
 
     @telling
     def execute(self, context):
@@ -76,7 +77,7 @@ class Refocus(bpy.types.Operator):
         colour, depth = passes.read_passes(scene, context.view_layer)
         height, width = depth.shape
         if (width, height) != (lens.width, lens.height):
-            raise ValueError(f"The last render has {width}x{height} pixels, the scene {lens.width}x{lens.height}")
+            raise ValueError(f"The last render has {width}x{height} pixels, not {lens.width}x{lens.height}")
         options = ["--unmix-edges"] if settings.unmix_edges else []
         result = passes.refocused(colour, depth, lens, settings.method, options)
         image = passes.show(context, "Softfocus", result)
