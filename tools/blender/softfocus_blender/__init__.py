@@ -148,8 +148,10 @@ class Panel(bpy.types.Panel):
         except ValueError as error:
             return tell(str(error))
         tell(f"{lens.focal_length_mm:.4g} mm, f/{lens.f_number:.3g}, focus at {lens.focus_m:.4g} m")
-        if not lens.is_round() and settings.method != "scatter-aperture":
-            tell("Round: only scatter-aperture has blades and a ratio")
+        tell(f"{lens.fov_y_degrees:.3g}° from top to bottom")
+        if not lens.is_round():
+            alone = "" if settings.method == "scatter-aperture" else " (scatter-aperture alone)"
+            tell(f"{lens.blades or 'no'} blades, ratio {lens.anamorphic:.3g}{alone}")
         layout.prop(settings, "method", text="")
         layout.prop(settings, "unmix_edges")
         layout.operator("softfocus.refocus")
