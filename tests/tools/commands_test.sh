@@ -67,7 +67,7 @@ copy_tree() {
     cd "$work/tree" || exit 1
   # These run what is compiled, or this.
   sed -i '1i return()' tests/embedding.cmake tests/walls.cmake
-  printf '#!/bin/sh\n' | tee tests/tools/farm_test.sh >tests/tools/commands_test.sh
+  printf '#!/bin/sh\n' | tee tests/tools/{farm_test.sh,blender_test.py} >tests/tools/commands_test.sh
 }
 
 # run COMMAND...: must succeed.

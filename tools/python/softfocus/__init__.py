@@ -11,8 +11,8 @@ float16 or float32 of linear light. OpenCV's order is `bgr[..., ::-1]`, which co
 """
 
 from ._calls import methods, profiles, refocus
-from ._program import compare, program, render
+from ._program import compare, program, render, run
 from ._shader import Shader
 
-__all__ = ["Shader", "compare", "methods", "profiles", "program", "refocus", "render"]
+__all__ = ["Shader", "compare", "methods", "profiles", "program", "refocus", "render", "run"]
 __version__ = "0.1.0"

@@ -42,13 +42,14 @@ def _words(options: dict[str, Any]) -> list[str]:
     return words
 
 
-def _run(words: list[str], *, passes: tuple[int, ...] = (0,)) -> subprocess.CompletedProcess[str]:
-    run = subprocess.run([program(), *words], capture_output=True, text=True, check=False)
-    if run.returncode not in passes:
-        lines = [line for line in run.stderr.splitlines() if ": warning: " not in line]
+def run(words: list[str], *, passes: tuple[int, ...] = (0,)) -> subprocess.CompletedProcess[str]:
+    """The program with these words. Raises ValueError, with its sentence, if it ends with another status."""
+    done = subprocess.run([program(), *words], capture_output=True, text=True, check=False)
+    if done.returncode not in passes:
+        lines = [line for line in done.stderr.splitlines() if ": warning: " not in line]
         said = "\n".join(lines).removeprefix("softfocus: ")
-        raise ValueError(said or f"softfocus ended with status {run.returncode}")
-    return run
+        raise ValueError(said or f"softfocus ended with status {done.returncode}")
+    return done
 
 
 def render(scene: str | os.PathLike[str], **options: Any) -> NDArray[numpy.float16]:
@@ -60,7 +61,7 @@ def render(scene: str | os.PathLike[str], **options: Any) -> NDArray[numpy.float
     """
     with tempfile.TemporaryDirectory(prefix="softfocus-") as folder:
         file = os.path.join(folder, "picture.npy")
-        _run(["render", os.fspath(scene), "--output", file, "--quiet", *_words(options)])
+        run(["render", os.fspath(scene), "--output", file, "--quiet", *_words(options)])
         return numpy.load(file)
 
 
@@ -83,5 +84,5 @@ def compare(
                 numpy.save(files[-1], picture.astype(kind, copy=False), allow_pickle=False)
             else:
                 files.append(os.fspath(picture))
-        run = _run(["compare", *files, "--json", *_words(options)], passes=(0, 1))
-        return {**json.loads(run.stdout), "passes": run.returncode == 0}
+        done = run(["compare", *files, "--json", *_words(options)], passes=(0, 1))
+        return {**json.loads(done.stdout), "passes": done.returncode == 0}
