@@ -169,13 +169,13 @@ counting() {
   ctest=$(command -v ctest)
   before=' counting'
   ctest_is 'rm build/softfocus_tests' "exec $ctest \"\$@\""
-  refused 'failed: raster/numbers/half_test.cpp, which did not run' '^[1-9] passed, 2[0-9][0-9] failed, 0 skipped$'
+  refused 'failed: raster/numbers/half_test.cpp, which did not run' '^[1-9] passed, [0-9][0-9][0-9] failed, 0 skipped$'
   ctest_is "exec $ctest \"\$@\" -E numbers.half_test"
   refused 'failed: raster/numbers/half_test.cpp, which is not among the tests' ', 1 failed, 0 skipped$'
   ctest_is "$ctest \"\$@\"" 'exit 7'
   refused 'failed: ctest, though no test did' ', 1 failed, 0 skipped$'
   ctest_is 'exit 0'
-  refused '^0 passed, 2[0-9][0-9] failed, 0 skipped$'
+  refused '^0 passed, [0-9][0-9][0-9] failed, 0 skipped$'
   rm "$work/bin/ctest"
   CASES=1 refused 'failed: dof/lens_test.cpp: 1 of its '
 }

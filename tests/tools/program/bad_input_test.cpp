@@ -265,7 +265,7 @@ TEST_CASE("bad input: a model or a texture that is a pipe, and a model of anothe
                 {"m.obj", "is a pipe or a device"});
   write_file(directory.file("m.fbx"), "glTF");
   check_refused(directory, {"render", directory.file("m.fbx"), "-o", directory.file("out.png")}, 1,
-                {"m.fbx", ".obj files"});
+                {"m.fbx", ".stl files"});
 }
 
 TEST_CASE("bad input: two outputs that are one file through a link that leads nowhere yet") {
