@@ -35,7 +35,7 @@ using PlaceKeys = std::array<std::vector<Keyframe>, 3>;
 struct Camera {
   glm::dvec3 position{0.0, 0.0, 3.0};  ///< at frame 0, or at its first key
   glm::dvec3 target{0.0};
-  PlaceKeys position_keys{}, target_keys{};
+  PlaceKeys position_keys{}, target_keys{}, up_keys{};
   Easing easing = Easing::linear;
   glm::dvec3 up{0.0, 1.0, 0.0};
   double fov_y_degrees = 40.0;
@@ -172,7 +172,7 @@ struct Object {
 /// Whether it stands elsewhere at another frame.
 inline bool moves(const Camera& camera) {
   return camera.orbit_degrees_per_frame != 0.0 || camera.position_keys[0].size() > 1 ||
-         camera.target_keys[0].size() > 1;
+         camera.target_keys[0].size() > 1 || camera.up_keys[0].size() > 1;
 }
 inline bool moves(const Object& object) {
   return object.motion != nullptr || object.spin_degrees_per_frame != glm::dvec3{0.0} ||

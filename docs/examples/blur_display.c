@@ -1,15 +1,16 @@
 /* Between LVGL and a display on SPI: blurs by depth what is drawn, strip by strip, on its way out.
- * With LVGL this is the callback of lv_display_set_flush_cb(), its area an lv_area_t, the display
- * RGB565_SWAPPED in partial render mode with strips as wide as the display; areas come from the top.
- * Here a checkerboard of 160x120 stands in for widgets, and the program says where bytes go:
- * tools/boards/display_run.cpp runs it on emulated boards. The left is near. */
+ * With LVGL flush() is the callback of lv_display_set_flush_cb() and ends with
+ * lv_display_flush_ready(); the display is RGB565_SWAPPED in partial render mode, with strips as
+ * wide as it. lv_obj_invalidate() of the screen before each frame makes them come from the top.
+ * Here a checkerboard of 160x120, near on the left, stands in for widgets, and the program says
+ * where bytes go: tools/boards/display_run.cpp runs it on emulated boards. */
 #include "dof/fixed/softfocus_fixed.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 void send_to_display(const void* bytes, size_t count); /* what the display is driven by */
-int draw_frame(void);                                  /* a frame; not 0: the lens is refused */
+int draw_frame(void); /* not 0: the lens is refused, or a strip that is not the next */
 #ifdef __cplusplus
 }
 #endif
@@ -25,13 +26,14 @@ static softfocus_fixed_weights table[256];
 static softfocus_fixed_stream stream;
 static uint16_t strip[kStrip * kWidth]; /* LVGL's draw buffer */
 static uint8_t depths[kWidth];          /* of a row: whatever the program knows of its widgets */
+static int refused;
 
 /* The bytes of a row are sent from where it was drawn: rows come out 7 later. */
 static void flush(const area* drawn, uint8_t* pixels) {
   for (int32_t y = drawn->y1; y <= drawn->y2; ++y, pixels += 2 * kWidth) {
-    if (softfocus_fixed_put_row(&stream, (uint32_t)y, pixels, depths, pixels) == 1) {
-      send_to_display(pixels, 2 * kWidth);
-    }
+    const int put = softfocus_fixed_put_row(&stream, (uint32_t)y, pixels, depths, pixels);
+    if (put == 1) send_to_display(pixels, 2 * kWidth);
+    if (put < 0) refused = 1;
   }
   if (drawn->y2 < kHeight - 1) return; /* lv_display_flush_is_last() */
   while (softfocus_fixed_finish_row(&stream, strip) == 1) send_to_display(strip, 2 * kWidth);
@@ -56,5 +58,5 @@ int draw_frame(void) {
     }
     flush(&drawn, (uint8_t*)strip);
   }
-  return 0;
+  return refused;
 }

@@ -71,22 +71,31 @@ glm::dvec3 target_at(const Camera& camera, double frame) {
   return place_at(camera.target_keys, camera.easing, camera.target, frame);
 }
 
+namespace {
+
+glm::dvec3 up_at(const Camera& camera, double frame) {
+  return place_at(camera.up_keys, camera.easing, camera.up, frame);
+}
+
+}  // namespace
+
 bool can_look(const Camera& camera, double frame) {
   const glm::dvec3 way = target_at(camera, frame) -
                          place_at(camera.position_keys, camera.easing, camera.position, frame);
-  const glm::dvec3 aside = cross(way, camera.up);
+  const glm::dvec3 up = up_at(camera, frame), aside = cross(way, up);
   // Shorter than this, the sideways axis would be rounding noise.
-  return dot(aside, aside) > 1e-12 * (dot(way, way) * dot(camera.up, camera.up));
+  return dot(aside, aside) > 1e-12 * (dot(way, way) * dot(up, up));
 }
 
 CameraMatrices camera_matrices(const Camera& camera, double frame, int width, int height) {
   const glm::dvec3 target = target_at(camera, frame);
   const glm::dvec3 position = place_at(camera.position_keys, camera.easing, camera.position, frame);
+  const glm::dvec3 up = up_at(camera, frame);
   const glm::dvec3 arm =
-      turn_about(position - target, normalize(camera.up), camera.orbit_degrees_per_frame * frame);
+      turn_about(position - target, normalize(up), camera.orbit_degrees_per_frame * frame);
   CameraMatrices matrices{};
   matrices.eye = target + arm;
-  matrices.world_to_eye = look_at(matrices.eye, target, camera.up);
+  matrices.world_to_eye = look_at(matrices.eye, target, up);
   matrices.eye_to_clip =
       perspective(camera.fov_y_degrees, static_cast<double>(width) / static_cast<double>(height),
                   camera.near_m, camera.far_m);

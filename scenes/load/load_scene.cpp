@@ -281,12 +281,13 @@ namespace {
     there.push_back(listing.name);
     names += (names.empty() ? "" : ", ") + listing.name;
   }
-  throw SceneError("there is no scene \"" + std::string(name) + "\"" +
-                   (names.empty() ? "; no scenes were found at all: give a .toml, .glb or .obj file"
-                                  : "; there are " + names +
-                                        ", random:SEED, and any .toml, .gltf, .glb, .obj, .ply or "
-                                        ".stl file can be given") +
-                   did_you_mean(name, there));
+  throw SceneError(
+      "there is no scene \"" + std::string(name) + "\"" +
+      (names.empty() ? "; no scenes were found at all: give a .toml, .glb, .obj, .ply or .stl file"
+                     : "; there are " + names +
+                           ", random:SEED, and any .toml, .gltf, .glb, .obj, .ply or "
+                           ".stl file can be given") +
+      did_you_mean(name, there));
 }
 
 constexpr std::string_view kRandom = "random:";

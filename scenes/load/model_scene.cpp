@@ -39,12 +39,22 @@ struct ModelPlace {
   }
 };
 
-// At frame 0.
+// At frame 0, and of what moves the corners of a box at others.
 template <class Visit>
 void for_each_position(const Scene& scene, Visit visit) {
   for (const Object& object : scene.objects) {
+    const std::vector<glm::vec3>& positions = scene.meshes[object.mesh].positions;
     const ModelPlace place(object, 0.0);
-    for (const glm::vec3& position : scene.meshes[object.mesh].positions) visit(place(position));
+    ModelBox box;
+    for (const glm::vec3& position : positions) {
+      visit(place(position));
+      box.add(position);
+    }
+    if (!object.motion) continue;
+    for (const double frame : telling_frames(*object.motion)) {
+      const ModelPlace then(object, frame);
+      for (const glm::dvec3& corner : box.corners()) visit(then(corner));
+    }
   }
 }
 
@@ -133,33 +143,16 @@ double last_moving_frame(const Scene& scene) {
   return keys.empty() ? last : std::max(last, keys.back().frame);
 }
 
-// How far from the camera things are at any frame, at most: the corners of boxes, at 64 frames.
-double farthest_ever(const Scene& scene, double last_frame) {
-  constexpr int kSteps = 64;
-  std::vector<glm::dvec3> corners;
-  for (const Object& object : scene.objects) {
-    glm::vec3 low{kLargestCoordinate}, high{-kLargestCoordinate};
-    for (const glm::vec3& position : scene.meshes[object.mesh].positions) {
-      low = glm::min(low, position);
-      high = glm::max(high, position);
-    }
-    for (int step = 0; step <= (object.motion ? kSteps : 0); ++step) {
-      const ModelPlace place(object, last_frame * step / kSteps);
-      for (int i = 0; i < 8; ++i) {
-        corners.push_back(place({(i & 1) != 0 ? low.x : high.x, (i & 2) != 0 ? low.y : high.y,
-                                 (i & 4) != 0 ? low.z : high.z}));
-      }
-    }
-  }
+// How far things are from where the camera ever is, at most.
+double farthest_ever(const Scene& scene) {
+  constexpr std::size_t kMostEyes = 1000;
+  ModelBox box;
+  for_each_position(scene, [&](glm::dvec3 p) { box.add(p); });
   const PlaceKeys& keys = scene.camera.position_keys;
   double farthest = 0.0;
-  for (std::size_t step = 0; step <= kSteps; ++step) {
-    glm::dvec3 eye = scene.camera.position;
-    for (int axis = 0; axis < 3 && !keys[0].empty(); ++axis) {
-      const std::vector<Keyframe>& along = keys[static_cast<std::size_t>(axis)];
-      eye[axis] = along[(along.size() - 1) * step / kSteps].value;
-    }
-    for (const glm::dvec3 corner : corners) {
+  for (std::size_t i = 0; i < keys[0].size(); i += keys[0].size() / kMostEyes + 1) {
+    const glm::dvec3 eye{keys[0][i].value, keys[1][i].value, keys[2][i].value};
+    for (const glm::dvec3& corner : box.corners()) {
       farthest = std::max(farthest, length_of(corner - eye));
     }
   }
@@ -176,11 +169,11 @@ void set_near_and_far(Scene& scene) {
     farthest = std::max(farthest, z);
     if (z > 0.0) nearest = std::min(nearest, z);
   });
-  const double last = last_moving_frame(scene);
+  const bool stands = camera.position_keys[0].empty();
   camera.far_m = farthest > 0.0 ? 1.5 * farthest : 100.0;
-  if (last > 0.0) camera.far_m = std::max(camera.far_m, 1.1 * farthest_ever(scene, last));
+  if (!stands) camera.far_m = std::max(camera.far_m, 1.1 * farthest_ever(scene));
   camera.near_m = camera.far_m * 1e-4;
-  if (last == 0.0) camera.near_m = std::max(std::min(nearest, camera.far_m) * 0.5, camera.near_m);
+  if (stands) camera.near_m = std::max(std::min(nearest, camera.far_m) * 0.5, camera.near_m);
   // Where it looks at nothing, the middle of the depths is the focus.
   if (farthest > 0.0) {
     const glm::dvec3 forwards = normalize(camera.target - camera.position);
@@ -275,7 +268,8 @@ Scene make_model_scene(Model model, const std::string& name) {
                         rounded(lens.lens.f_number) + ", focused at " + rounded(lens.lens.focus_m) +
                         " m, circles " + rounded(lens.coc_scale) + " times as large (--coc-scale)");
   if (const double last = last_moving_frame(scene); last > 0.0) {
-    scene.notes.push_back(name + ": moves up to frame " + rounded(std::ceil(last)) +
+    scene.notes.push_back(name + ": moves up to frame " +
+                          std::to_string(static_cast<long long>(std::ceil(last))) +
                           ", 60 a second (--frames)");
   }
   return scene;

@@ -9,7 +9,8 @@
 namespace softfocus {
 
 /// The tracks of each node that has some, with neither `above` nor `between`. If several animations
-/// move a node, the first does. Tracks whose keys are all the same have one key.
+/// move a node, the first does. Tracks whose keys are all the same have one key. What cannot be is
+/// left out, with a warning.
 std::map<int, NodeMotion> read_animations(GltfFile& file);
 
 /// Where a node stands without animations.

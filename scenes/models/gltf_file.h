@@ -37,6 +37,7 @@ struct GltfFile {
   std::map<int, std::array<double, 2>> means_of_image{};
   std::map<std::string, std::size_t> length_of_buffer{};  ///< by its file's name
   std::set<std::string> told{};                           ///< warnings
+  std::size_t animation_keys = 0;                         ///< that were read
   std::size_t numbers_left = std::size_t{1} << 30;        ///< that may still be read
 };
 

@@ -9,6 +9,7 @@
 
 #include "raster/numbers/exact_math.h"
 #include "raster/numbers/vector_math.h"
+#include "scenes/models/gltf_animations.h"
 #include "scenes/models/gltf_materials.h"
 
 namespace softfocus {
@@ -323,6 +324,15 @@ bool is_drawn(GltfFile& file, const tinygltf::Primitive& primitive) {
   return !is_empty;
 }
 
+// What is moved by a motion, moved before.
+std::shared_ptr<const NodeMotion> moved_from(std::shared_ptr<const NodeMotion> above,
+                                             glm::dvec3 origin) {
+  NodeMotion moved = standing(tinygltf::Node{});
+  moved.above = std::move(above);
+  for (int axis = 0; axis < 3; ++axis) moved.between[3][axis] = origin[axis];
+  return std::make_shared<NodeMotion>(std::move(moved));
+}
+
 // Of all parts together.
 constexpr std::size_t kMostGltfCorners = std::size_t{1} << 26;
 
@@ -374,21 +384,30 @@ void add_mesh(GltfFile& file, const PlacedNode& placed, std::span<const PlacedNo
 }
 
 ModelBox finish_parts(GltfFile& file, std::vector<GltfPart>& parts) {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  glm::dvec3 low{kFar}, high{-kFar};
+  ModelBox box;
+  std::vector<ModelBox> own_boxes;
   for (const GltfPart& part : parts) {
-    const glm::dmat4 at_first = part.motion ? matrix_at(*part.motion, 0.0) : glm::dmat4{1.0};
+    ModelBox own;
     double radius = 0.0;
-    for (const glm::dvec3& own : part.positions) {
-      const glm::dvec3 p = part.motion ? place(at_first, own) : own;
-      low = glm::min(low, p);
-      high = glm::max(high, p);
-      radius = std::max(radius, length_of(own));
+    for (const glm::dvec3& p : part.positions) {
+      own.add(p);
+      radius = std::max(radius, length_of(p));
     }
-    if (part.motion && !(reach(*part.motion, radius) <= kLargestCoordinate)) {
+    own_boxes.push_back(own);
+    if (!part.motion) {
+      box.add(own.low);
+      box.add(own.high);
+      continue;
+    }
+    if (!(reach(*part.motion, radius) <= kLargestCoordinate)) {
       fail_gltf(file, "an animation leads beyond 1e9");
     }
+    for (const double frame : telling_frames(*part.motion)) {
+      const glm::dmat4 matrix = matrix_at(*part.motion, frame);
+      for (const glm::dvec3& corner : own.corners()) box.add(place(matrix, corner));
+    }
   }
+  const auto [low, high] = box;
   constexpr double kSmallest = 1e-9;  // lengths are squared in binary32
   if (!(std::max({high.x - low.x, high.y - low.y, high.z - low.z}) >= kSmallest)) {
     fail_gltf(file, "has no size; a model at least 1e-9 across would be right");
@@ -398,8 +417,13 @@ ModelBox finish_parts(GltfFile& file, std::vector<GltfPart>& parts) {
   if (model.origin != glm::dvec3{0.0}) {
     model.warnings.push_back(far_warning(file.path, model.origin));
   }
-  for (GltfPart& part : parts) {
-    const glm::dvec3 origin = part.motion ? glm::dvec3{0.0} : model.origin;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    GltfPart& part = parts[i];
+    glm::dvec3 origin = model.origin;
+    if (part.motion) {
+      origin = far_middle(own_boxes[i].low, own_boxes[i].high);
+      if (origin != glm::dvec3{0.0}) part.motion = moved_from(part.motion, origin);
+    }
     for (const glm::dvec3& p : part.positions) part.mesh.positions.emplace_back(p - origin);
     part.positions = {};
     model.parts.push_back({std::move(part.mesh), part.material, {}, part.motion});

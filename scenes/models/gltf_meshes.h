@@ -20,6 +20,7 @@ struct PlacedNode {
   /// Of the node, or of the next above that moves; null: none does.
   std::shared_ptr<const NodeMotion> motion;
   glm::dmat4 to_motion;  ///< the matrix to there, or to the world
+  int moving = 0;        ///< nodes that do, from it upwards
 };
 
 /// What has one material and moves as one. It grows in binary64 until the model's middle is known.
@@ -42,12 +43,8 @@ struct GltfParts {
 void add_mesh(GltfFile& file, const PlacedNode& at, std::span<const PlacedNode* const> nodes,
               GltfParts& parts);
 
-struct ModelBox {
-  glm::dvec3 low, high;
-};
-
 /// Puts the parts into the model, those that stand still less its middle if that is far. Returns
-/// the box that holds them at frame 0.
+/// the box that holds them at all frames.
 ModelBox finish_parts(GltfFile& file, std::vector<GltfPart>& parts);
 
 }  // namespace softfocus

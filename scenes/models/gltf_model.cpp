@@ -17,6 +17,8 @@ namespace {
 
 // Of nodes, one below the other.
 constexpr int kMostDepth = 1000;
+// Of them that move: each matrix of a part is a product of so many.
+constexpr int kMostMoving = 100;
 
 glm::dmat4 own_matrix(const tinygltf::Node& node) {
   if (node.matrix.size() != 16) return matrix_at(standing(node), 0.0);
@@ -41,6 +43,7 @@ PlacedNode place_node(const tinygltf::Node& node, int number, const NodeMotion* 
   motion->between = parent.to_motion;
   placed.motion = std::move(motion);
   placed.to_motion = glm::dmat4{1.0};
+  ++placed.moving;
   return placed;
 }
 
@@ -83,6 +86,10 @@ std::vector<PlacedNode> placed_nodes(GltfFile& file) {
       fail_gltf(file, numbered("node", number) + " lies below more than " +
                           std::to_string(kMostDepth) + " others");
     }
+    if (next.parent.moving > kMostMoving) {
+      fail_gltf(file, numbered("node", number) + " lies below more than " +
+                          std::to_string(kMostMoving) + " that move");
+    }
     is_seen[number] = true;
     const auto moved = tracks.find(next.node);
     placed.push_back(
@@ -94,32 +101,29 @@ std::vector<PlacedNode> placed_nodes(GltfFile& file) {
   return placed;
 }
 
-// Keys at all whole frames: a camera's own go by straight lines. A camera that rolls has the `up`
-// of frame 0.
+// Keys at all whole frames: a camera's own go by straight lines. Where it has no direction, the
+// last stays.
 void add_camera_keys(GltfFile& file, const PlacedNode& at, Camera& camera) {
   constexpr double kMostFrames = 36000.0;  // ten minutes
   const double last = std::ceil(last_frame(*at.motion));
   if (last > kMostFrames) warn_gltf(file, "the camera stands still after ten minutes");
-  const glm::dvec3 y{0.0, 1.0, 0.0};
-  bool is_upright = true, rolls = false;
+  glm::dvec3 way = camera.target - camera.position, up = camera.up;
   for (int number = 0; number <= std::min(last, kMostFrames); ++number) {
     const double frame = number;
     const glm::dmat4 to_world = multiply(matrix_at(*at.motion, frame), at.to_motion);
     const glm::dvec3 eye = glm::dvec3{to_world[3]} - file.model.origin;
-    const glm::dvec3 target = eye - normalize(glm::dvec3{to_world[2]});
+    const glm::dvec3 new_way = -normalize(glm::dvec3{to_world[2]});
+    const glm::dvec3 new_up = normalize(glm::dvec3{to_world[1]}), aside = cross(new_way, new_up);
+    if (dot(aside, aside) > 1e-6) {
+      way = new_way;
+      up = new_up;
+    }
     for (int axis = 0; axis < 3; ++axis) {
       const auto i = static_cast<std::size_t>(axis);
       camera.position_keys[i].push_back({frame, eye[axis]});
-      camera.target_keys[i].push_back({frame, target[axis]});
+      camera.target_keys[i].push_back({frame, (eye + way)[axis]});
+      camera.up_keys[i].push_back({frame, up[axis]});
     }
-    const glm::dvec3 right = normalize(glm::dvec3{to_world[0]});
-    is_upright = is_upright && std::fabs(dot(right, y)) < 1e-4 && to_world[1].y > 0.0;
-    rolls = rolls || std::fabs(dot(right, camera.up)) > 1e-3;
-  }
-  if (is_upright) {
-    camera.up = y;
-  } else if (rolls) {
-    warn_gltf(file, "a camera that rolls keeps what is up at frame 0");
   }
 }
 

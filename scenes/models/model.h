@@ -1,8 +1,12 @@
 #pragma once
 // A model as its file has it, whatever the format.
 
+#include <array>
+#include <cstddef>
 #include <filesystem>
+#include <glm/common.hpp>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,6 +40,25 @@ struct Model {
   // For a model that is a scene by itself.
   std::optional<Camera> camera{};  ///< without near and far
   std::vector<Light> lights{};
+};
+
+/// A box that grows.
+struct ModelBox {
+  glm::dvec3 low{std::numeric_limits<double>::infinity()};
+  glm::dvec3 high{-std::numeric_limits<double>::infinity()};
+
+  void add(glm::dvec3 p) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  std::array<glm::dvec3, 8> corners() const {
+    std::array<glm::dvec3, 8> made;
+    for (std::size_t i = 0; i < 8; ++i) {
+      made[i] = {(i & 1) != 0 ? high.x : low.x, (i & 2) != 0 ? high.y : low.y,
+                 (i & 4) != 0 ? high.z : low.z};
+    }
+    return made;
+  }
 };
 
 /// Whether a name is a model's file: ".gltf", ".glb", ".obj", ".ply", ".stl".

@@ -1,6 +1,7 @@
 #include "scenes/models/node_motion.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "raster/numbers/vector_math.h"
@@ -54,9 +55,12 @@ glm::dvec4 value_of(const NodeTrack& track, bool is_turn, double frame) {
   return is_turn ? unit_quaternion(on_cubic) : on_cubic;
 }
 
-// The longest value on the way, at most.
-double longest(const NodeTrack& track) {
-  const auto length = [](glm::dvec4 v) { return std::sqrt(dot4(v, v)); };
+// The largest of a value's numbers on the way, or its length there, at most.
+double most_of(const NodeTrack& track, bool is_length) {
+  const auto length = [&](glm::dvec4 v) {
+    if (is_length) return std::sqrt(dot4(v, v));
+    return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+  };
   double most = 0.0;
   if (track.form != KeyForm::cubic) {
     for (const glm::dvec4 value : track.values) most = std::max(most, length(value));
@@ -68,6 +72,10 @@ double longest(const NodeTrack& track) {
                               frames * (length(track.values[i]) + length(track.values[i + 2])));
   }
   return most;
+}
+
+std::array<const NodeTrack*, 3> tracks_of(const NodeMotion& motion) {
+  return {motion.translation.get(), motion.rotation.get(), motion.scale.get()};
 }
 
 }  // namespace
@@ -91,26 +99,57 @@ glm::dmat4 placing_matrix(glm::dvec3 translation, glm::dvec4 rotation, glm::dvec
 }
 
 glm::dmat4 matrix_at(const NodeMotion& motion, double frame) {
-  const glm::dmat4 own = placing_matrix(glm::dvec3{value_of(motion.translation, false, frame)},
-                                        value_of(motion.rotation, true, frame),
-                                        glm::dvec3{value_of(motion.scale, false, frame)});
+  const glm::dmat4 own = placing_matrix(glm::dvec3{value_of(*motion.translation, false, frame)},
+                                        value_of(*motion.rotation, true, frame),
+                                        glm::dvec3{value_of(*motion.scale, false, frame)});
   const glm::dmat4 to_above = multiply(motion.between, own);
   return motion.above ? multiply(matrix_at(*motion.above, frame), to_above) : to_above;
 }
 
 double last_frame(const NodeMotion& motion) {
   double last = motion.above ? last_frame(*motion.above) : 0.0;
-  for (const NodeTrack* track : {&motion.translation, &motion.rotation, &motion.scale}) {
-    last = std::max(last, track->frames.back());
-  }
+  for (const NodeTrack* track : tracks_of(motion)) last = std::max(last, track->frames.back());
   return last;
 }
 
+std::vector<double> telling_frames(const NodeMotion& motion) {
+  constexpr std::size_t kMostKeys = 64;
+  constexpr int kBetween = 64;
+  std::vector<double> keys;
+  for (const NodeMotion* at = &motion; at != nullptr; at = at->above.get()) {
+    for (const NodeTrack* track : tracks_of(*at)) {
+      // Of many keys some, evenly.
+      const std::size_t step = track->frames.size() / kMostKeys + 1;
+      for (std::size_t i = 0; i < track->frames.size(); i += step) {
+        keys.push_back(track->frames[i]);
+      }
+    }
+  }
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  std::vector<double> frames;
+  for (std::size_t i = 0; i < keys.size(); i += keys.size() / kMostKeys + 1) {
+    frames.push_back(keys[i]);
+  }
+  for (int i = 0; i <= kBetween; ++i) frames.push_back(keys.back() * i / kBetween);
+  std::sort(frames.begin(), frames.end());
+  frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
+  return frames;
+}
+
 double reach(const NodeMotion& motion, double radius) {
-  double far = radius * longest(motion.scale) + longest(motion.translation);
-  const glm::dmat4& m = motion.between;
-  far = far * std::sqrt((dot4(m[0], m[0]) + dot4(m[1], m[1])) + dot4(m[2], m[2])) +
-        std::sqrt(dot4(m[3], m[3]));
+  double far = radius * most_of(*motion.scale, false) + most_of(*motion.translation, true);
+  // A matrix lengthens by at most the root of the largest sum of magnitudes in a row of its square:
+  // 1 if it only turns.
+  double square = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    double row = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      row += std::fabs(dot(glm::dvec3{motion.between[i]}, glm::dvec3{motion.between[k]}));
+    }
+    square = std::max(square, row);
+  }
+  far = far * std::sqrt(square) + length_of(glm::dvec3{motion.between[3]});
   return motion.above ? reach(*motion.above, far) : far;
 }
 

@@ -25,9 +25,9 @@ struct NodeTrack {
 };
 
 struct NodeMotion {
-  std::shared_ptr<const NodeMotion> above;  ///< the next above that moves; null: none
-  glm::dmat4 between{1.0};                  ///< from this node's parent to that one
-  NodeTrack translation, rotation, scale;
+  std::shared_ptr<const NodeMotion> above{};                            ///< null: none above moves
+  glm::dmat4 between{1.0};                                              ///< from the parent to that
+  std::shared_ptr<const NodeTrack> translation{}, rotation{}, scale{};  ///< all there
 };
 
 /// Of length 1; of length 0 it turns nothing.
@@ -42,6 +42,10 @@ glm::dmat4 matrix_at(const NodeMotion& motion, double frame);
 
 /// Of its keys and those above.
 double last_frame(const NodeMotion& motion);
+
+/// Frames by which one sees where it goes: 0, its keys and those above, or some of them, and some
+/// between; about 130 at most.
+std::vector<double> telling_frames(const NodeMotion& motion);
 
 /// How far from the model's origin it ever takes what is so far from the node's, at most.
 double reach(const NodeMotion& motion, double radius);

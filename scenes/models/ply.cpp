@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "raster/numbers/srgb.h"
 #include "scenes/files/decimal.h"
 #include "scenes/files/scene_error.h"
 #include "scenes/models/model.h"
@@ -22,13 +23,6 @@ struct NumberType {
   std::string_view name, also;
   std::size_t bytes;
   NumberKind kind;
-
-  // What a colour of 1 is.
-  double one() const {
-    if (kind == NumberKind::real) return 1.0;
-    const double values = std::ldexp(1.0, static_cast<int>(8 * bytes));
-    return kind == NumberKind::whole ? values / 2.0 - 1.0 : values - 1.0;
-  }
 };
 
 constexpr std::array<NumberType, 8> kTypes{{
@@ -125,6 +119,7 @@ const NumberType& type_named(const Reader& reader, std::string_view name) {
 struct Header {
   std::vector<Element> elements{};
   std::string texture{};
+  std::size_t textures = 0;
 };
 
 void read_property(const Reader& reader, std::string_view line, Header& header) {
@@ -160,17 +155,19 @@ Header read_header(Reader& reader) {
   Header header;
   Form form = Form::text;
   bool has_format = false;
-  // As its first line ends, so do the others.
   const std::size_t end = reader.rest.find_first_of("\r\n");
   if (end == reader.rest.npos || trimmed(reader.rest.substr(0, end)) != "ply") {
     reader.fail("is no PLY: the first line is not \"ply\"");
   }
-  const std::string line_end{reader.rest.substr(end, reader.rest.substr(end, 2) == "\r\n" ? 2 : 1)};
+  // Lines end with a newline, perhaps after a return, or with returns alone.
+  const bool has_returns = reader.rest[end] == '\r' && reader.rest.substr(end, 2) != "\r\n";
+  const char line_end = has_returns ? '\r' : '\n';
   for (;;) {
     const std::size_t length = reader.rest.find(line_end);
     if (length == reader.rest.npos) reader.fail("the header has no end; end_header is missing");
     std::string_view line = reader.rest.substr(0, length);
-    reader.rest.remove_prefix(length + line_end.size());
+    reader.rest.remove_prefix(length + 1);
+    if (line.ends_with('\r')) line.remove_suffix(1);
     const std::string_view keyword = next_word(line);
     if (keyword == "end_header") break;
     if (keyword == "format") {
@@ -188,8 +185,9 @@ Header read_header(Reader& reader) {
       header.elements.push_back({std::string{name}, count});
     } else if (keyword == "property") {
       read_property(reader, line, header);
-    } else if (keyword == "comment" && next_word(line) == "TextureFile" && header.texture.empty()) {
-      header.texture = trimmed(line);
+    } else if (keyword == "comment" && next_word(line) == "TextureFile") {
+      if (header.texture.empty()) header.texture = trimmed(line);
+      ++header.textures;
     }
     ++reader.line;
   }
@@ -232,10 +230,35 @@ std::optional<Slot> slot_named(std::string_view name) {
 struct Growing {
   ObjText obj{};
   std::vector<glm::dvec3> positions{};
-  std::vector<glm::vec2> uvs{};  // of vertices
+  std::vector<glm::vec2> uvs{};     // of vertices
+  bool have_whole_colours = false;  // as stored, in obj
   std::size_t short_faces = 0, wild_uvs = 0;
-  bool has_bright_colours = false;
 };
+
+// Colours as they are stored become light. Whole numbers are codes along the sRGB curve, up to 255
+// unless there are larger ones; floats are light, 0 to 1 if not far beyond.
+void finish_colours(const std::string& file, Growing& made) {
+  ObjText& obj = made.obj;
+  float most = 0.0f;
+  for (const glm::vec3& colour : obj.colours) {
+    for (int k = 0; k < 3; ++k) {
+      if (colour[k] <= kLargestCoordinate) most = std::max(most, colour[k]);
+    }
+  }
+  constexpr float kFarBeyond = 2.0f, kByte = 255.0f, kShort = 65535.0f;
+  const bool are_bytes = made.have_whole_colours || most >= kFarBeyond;
+  const float one = !are_bytes ? 1.0f : most <= kByte ? kByte : kShort;
+  if (are_bytes && !made.have_whole_colours) {
+    obj.warnings.push_back(file + ": colours beyond 1: they are taken for 0 to 255");
+  }
+  for (glm::vec3& colour : obj.colours) {
+    for (int k = 0; k < 3; ++k) {
+      const float share = colour[k] > 0.0f ? std::min(colour[k] / one, 1.0f) : 0.0f;
+      const auto code = static_cast<std::uint8_t>(share * kByte + 0.5f);
+      colour[k] = made.have_whole_colours ? srgb8_to_linear(code) : share;
+    }
+  }
+}
 
 // The numbers of a list, or past them.
 void read_list(Reader& reader, const Property& property, std::vector<double>* list) {
@@ -272,8 +295,8 @@ void read_vertices(Reader& reader, const Element& element, Growing& made) {
       }
       const double value = reader.number(*property.type);
       if (!slots[k]) continue;
-      const bool is_colour = *slots[k] >= slot_red && *slots[k] <= slot_blue;
-      values[*slots[k]] = is_colour ? value / property.type->one() : value;
+      values[*slots[k]] = value;
+      if (*slots[k] == slot_red) made.have_whole_colours = property.type->kind != NumberKind::real;
     }
     const auto vector = [&](Slot first) {
       return glm::dvec3{values[first], values[first + 1], values[first + 2]};
@@ -285,13 +308,7 @@ void read_vertices(Reader& reader, const Element& element, Growing& made) {
       obj.normals.emplace_back(square > 0.0 && square < 1e30 ? n : glm::dvec3{0.0});
     }
     if (has_all(slot_red, 3)) {
-      glm::vec3 colour{0.0f};
-      for (int k = 0; k < 3; ++k) {
-        const double share = vector(slot_red)[k];
-        if (share > 0.0) colour[k] = static_cast<float>(std::min(share, 255.0));
-        made.has_bright_colours = made.has_bright_colours || colour[k] > 1.0f;
-      }
-      obj.colours.push_back(colour);
+      obj.colours.emplace_back(vector(slot_red));
     }
     if (has_all(slot_u, 2)) {
       const bool is_number = std::fabs(values[slot_u]) <= kLargestCoordinate &&
@@ -413,6 +430,16 @@ FileFaces parse_ply(std::string_view bytes, const std::string& file) {
       pass_over(reader, element);
     }
   }
+  const auto has_corners = [](const Property& property) {
+    return property.count_type != nullptr &&
+           (property.name == "vertex_indices" || property.name == "vertex_index");
+  };
+  for (const Element& element : header.elements) {
+    if (element.name == "face" && element.count > 0 &&
+        std::none_of(element.properties.begin(), element.properties.end(), has_corners)) {
+      throw SceneError(file + ": its faces have no list vertex_indices");
+    }
+  }
   if (obj.faces.empty()) {
     throw SceneError(file + ": has no faces; points alone cannot be drawn, a mesh would be right");
   }
@@ -439,11 +466,9 @@ FileFaces parse_ply(std::string_view bytes, const std::string& file) {
     if (count > 0) obj.warnings.push_back(file + ": " + std::to_string(count) + " " + what);
   };
   warn(made.short_faces, "faces of fewer than three corners are left out");
+  warn(header.textures > 1 ? header.textures - 1 : 0, "textures behind the first are left out");
   warn(made.wild_uvs, "texture coordinates are out of range, or none, and 0");
-  if (made.has_bright_colours) {
-    for (glm::vec3& colour : obj.colours) colour /= 255.0f;
-    obj.warnings.push_back(file + ": colours beyond 1: they are taken for 0 to 255");
-  }
+  finish_colours(file, made);
   result.faces = std::move(obj);
   place_positions(made.positions, result);
   return result;

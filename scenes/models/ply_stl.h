@@ -20,8 +20,7 @@ struct FileFaces {
 
 /// Reads text and binary of either byte order. Understands, of whatever type,
 ///   vertex   x y z; nx ny nz; red green blue or r g b, perhaps diffuse_ before, of whole numbers
-///   as
-///            shares of the type's largest; s t or u v, perhaps texture_ before
+///            along the sRGB curve; s t or u v, perhaps texture_ before
 ///   face     vertex_indices or vertex_index; texcoord, u and v a corner
 ///   tristrips   vertex_indices, where -1 begins another strip
 ///   comment TextureFile
@@ -30,9 +29,10 @@ struct FileFaces {
 /// face of too many corners, and points alone. `file` is for complaints.
 FileFaces parse_ply(std::string_view bytes, const std::string& file);
 
-/// Reads text and binary. Facets are flat and as they are wound: their normals and attributes are
-/// passed over. Throws SceneError for a file that is cut off, a word in the wrong place (with the
-/// line), a position that is none, and a file without a facet.
+/// Reads text and binary. Facets are flat and as they are wound: their normals, colours and
+/// attributes are passed over. A facet with a position that is none is left out, with a warning.
+/// Throws SceneError for a file that is cut off, a word in the wrong place (with the line), and a
+/// file without a facet.
 FileFaces parse_stl(std::string_view bytes, const std::string& file);
 
 // What both share.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -42,13 +43,23 @@ struct Facets {
     obj.corners.push_back({static_cast<std::int32_t>(positions.size())});
     positions.push_back(p);
   }
-  // Of the corners since the last.
+  // Of the corners since the last; left out if one is no position.
   void add_facet() {
     const ObjFace none{};
     const ObjFace& last = obj.faces.empty() ? none : obj.faces.back();
-    const std::uint32_t first = last.first_corner + last.corner_count;
-    obj.faces.push_back({first, static_cast<std::uint32_t>(obj.corners.size()) - first});
+    const std::size_t first = last.first_corner + last.corner_count;
+    const auto from = positions.begin() + static_cast<std::ptrdiff_t>(first);
+    if (std::all_of(from, positions.end(), is_position)) {
+      obj.faces.push_back({static_cast<std::uint32_t>(first),
+                           static_cast<std::uint32_t>(obj.corners.size() - first)});
+      return;
+    }
+    ++left_out;
+    positions.resize(first);
+    obj.corners.resize(first);
   }
+
+  std::size_t left_out = 0;
 };
 
 constexpr std::size_t kHeader = 84, kFacet = 50;
@@ -77,10 +88,6 @@ void read_binary(std::string_view bytes, const std::string& file, Facets& facets
         p[static_cast<int>(axis)] =
             std::bit_cast<float>(word_at(bytes, corners + 12 * corner + 4 * axis));
       }
-      if (!is_position(p)) {
-        throw SceneError(file + ": facet " + std::to_string(i + 1) +
-                         " has a coordinate that is no number, or beyond 1e9");
-      }
       facets.add_corner(p);
     }
     facets.add_facet();
@@ -107,7 +114,11 @@ struct Words {
     text.remove_prefix(at);
     return word;
   }
-  void end_line() { text.remove_prefix(std::min(text.find('\n'), text.size())); }
+  // Past a name: to the line's end, or to the first facet in it.
+  void end_line() {
+    const std::string_view line_rest = text.substr(0, text.find_first_of("\r\n"));
+    text.remove_prefix(std::min(line_rest.find("facet normal"), line_rest.size()));
+  }
   [[noreturn]] void fail(const std::string& reason) const {
     throw SceneError(file + ":" + std::to_string(line) + ": " + reason);
   }
@@ -120,7 +131,6 @@ struct Words {
   glm::dvec3 position() {
     glm::dvec3 p{0.0};
     for (int axis = 0; axis < 3; ++axis) p[axis] = number();
-    if (!is_position(p)) fail("is out of range; numbers from -1e9 to 1e9 would be right");
     return p;
   }
 };
@@ -129,12 +139,13 @@ void read_words(Words words, Facets& facets) {
   std::uint32_t corners = 0;
   bool is_in_facet = false;
   for (std::string word = words.next(); !word.empty(); word = words.next()) {
+    if (word == "end") word += words.next();
     if (word == "vertex") {
       if (!is_in_facet) words.fail("a vertex outside a facet");
       if (++corners > kMaxFaceCorners) words.fail("a facet of too many vertices");
       facets.add_corner(words.position());
-    } else if (word == "solid" || word == "endsolid") {
-      words.end_line();  // its name
+    } else if (word == "solid" || word == "endsolid" || word == "color" || word[0] == '#') {
+      words.end_line();
     } else if (word == "facet") {
       if (is_in_facet) words.fail("a facet within a facet; endfacet is missing");
       is_in_facet = true;
@@ -157,19 +168,33 @@ void read_words(Words words, Facets& facets) {
 }  // namespace
 
 FileFaces parse_stl(std::string_view bytes, const std::string& file) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  if (bytes.starts_with(kMark)) bytes.remove_prefix(kMark.size());
   Facets facets;
   facets.obj.has_smoothing_groups = true;  // and all are in none: flat
-  // Some binary files begin with "solid" too; their length tells them.
-  const bool is_binary =
+  // Some binary files begin with "solid" too; their length tells them, or that no facet follows.
+  const bool has_length =
       bytes.size() >= kHeader && bytes.size() - kHeader == kFacet * word_at(bytes, kHeader - 4);
-  Words words{bytes, file};
-  if (!is_binary && words.next() == "solid") {
+  constexpr std::size_t kLongName = 4096;
+  Words words{bytes.substr(0, kLongName), file};
+  bool is_text = !has_length && words.next() == "solid";
+  if (is_text) {
+    std::string word = words.next();
+    while (!word.empty() && !word.ends_with("facet") && word != "endsolid") word = words.next();
+    is_text = !word.empty() || bytes.size() < kHeader;
+  }
+  if (is_text) {
     read_words({bytes, file}, facets);
   } else {
     read_binary(bytes, file, facets);
   }
   if (facets.obj.faces.empty()) throw SceneError(file + ": has no facets; a mesh would be right");
   FileFaces made{std::move(facets.obj)};
+  if (facets.left_out > 0) {
+    made.faces.warnings.push_back(file + ": " + std::to_string(facets.left_out) +
+                                  " facets with a coordinate that is no number, or beyond 1e9, are "
+                                  "left out");
+  }
   place_positions(facets.positions, made);
   return made;
 }

@@ -186,7 +186,8 @@ void complete(ChartOptions& options) {
     }
   }
   if (options.scenes.empty()) {
-    throw UsageError("no scenes were found; give --scenes with a .toml, .glb or .obj file");
+    throw UsageError(
+        "no scenes were found; give --scenes with a .toml, .glb, .obj, .ply or .stl file");
   }
   check_memory("--size", options.size,
                kChartBytesPerPixel + (options.subject->turns ? kAtlasBytesPerPixel : 0));

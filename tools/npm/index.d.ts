@@ -143,7 +143,7 @@ export interface Frame extends Picture<Float32Array> {
 /**
  * `softfocus render`.
  *
- * @param scene a name such as "figures" or "random:7", or one of `files`: .toml, .gltf, .glb, .obj
+ * @param scene a name such as "figures" or "random:7", or one of `files`: .toml, .gltf, .glb, .obj, .ply, .stl
  * @throws SoftfocusError
  */
 export function render(scene: string, options?: RenderOptions): Promise<Frame>;

@@ -7,6 +7,7 @@
 
 #include "scenes/files/file_bytes.h"
 #include "scenes/load/load_scene.h"
+#include "scenes/models/model.h"
 #include "scenes/parameters.h"
 #include "tools/cli/errors.h"
 #include "tools/page/picture.h"
@@ -118,12 +119,6 @@ std::string model_text(const Opened& opened) {
   return text + "\n[[object]]\n" + lines_text({{"shape", R"("model")"}, {"file", json_text(name)}});
 }
 
-bool is_model(const std::string& source) {
-  std::string extension = std::filesystem::path{source}.extension().string();
-  for (char& letter : extension) letter = letter >= 'A' && letter <= 'Z' ? letter + 32 : letter;
-  return extension == ".obj";
-}
-
 }  // namespace
 
 std::string scene_text(const Opened& opened, const ShownFrame& shown) {
@@ -134,11 +129,11 @@ std::string scene_text(const Opened& opened, const ShownFrame& shown) {
   if (is_random_scene(opened.source)) {
     throw UsageError(opened.source + " has no file: its number is all there is to it");
   }
-  std::string text = is_model(opened.source)
+  std::string text = is_model_name(opened.source)
                          ? model_text(opened)
                          : read_file_bytes(opened.scene.files.back(), kLargestText);
   // A camera's way stays in the file.
-  if (shown.settings.camera || is_model(opened.source)) {
+  if (shown.settings.camera || is_model_name(opened.source)) {
     text = with_section(text, "camera", camera_lines(shown.drawn->camera));
   }
   return shown.lens ? with_section(text, "lens", lens_lines(*shown.lens)) : text;

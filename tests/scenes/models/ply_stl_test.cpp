@@ -8,6 +8,7 @@
 #include <bit>
 #include <functional>
 
+#include "raster/numbers/srgb.h"
 #include "scenes/load/load_scene.h"
 #include "tests/support/scene_test_files.h"
 
@@ -111,12 +112,15 @@ void damage(const std::string& bytes, const std::function<void(const std::string
 
 }  // namespace
 
+// What 51 of 255 is along the sRGB curve.
+const float kRed = srgb8_to_linear(51);
+
 TEST_CASE("PLY in text and in binary of either byte order has the same faces") {
   const FileFaces text = parse_ply(text_ply(), "file");
   CHECK(text.faces.positions ==
         std::vector<glm::vec3>{{0, 0, 0.5f}, {1, 0, 0.5f}, {1, 1, 0.5f}, {0, 1, 0.5f}});
   CHECK(text.faces.colours ==
-        std::vector<glm::vec3>{{1, 0, 0.2f}, {1, 0, 0.2f}, {0, 0, 0}, {1, 1, 1}});
+        std::vector<glm::vec3>{{1, 0, kRed}, {1, 0, kRed}, {0, 0, 0}, {1, 1, 1}});
   CHECK(text.faces.corners[4].position == 2);
   CHECK(text.faces.corners[4].normal == -1);
   CHECK(text.faces.faces.size() == 2);
@@ -188,7 +192,10 @@ TEST_CASE("a model is the same scene as PLY, STL and OBJ, flat where STL is") {
   const TemporaryDirectory directory;
   write_file(directory.file("a.ply"), text_ply());
   std::string obj =
-      "v 0 0 .5 1 0 .2\nv 1 0 .5 1 0 .2\nv 1 1 .5 0 0 0\nv 0 1 .5 1 1 1\nf 1 2 3\nf 1 3 4\n";
+      "v 0 0 .5 1 0 C\nv 1 0 .5 1 0 C\nv 1 1 .5 0 0 0\nv 0 1 .5 1 1 1\nf 1 2 3\nf 1 3 4\n";
+  for (std::size_t at = obj.find('C'); at != obj.npos; at = obj.find('C')) {
+    obj.replace(at, 1, "0.033104766");
+  }
   write_file(directory.file("a.obj"), obj);
   const Scene ply = load_scene(directory.file("a.ply"), {});
   const Scene same = load_scene(directory.file("a.obj"), {});
@@ -210,6 +217,49 @@ TEST_CASE("a model is the same scene as PLY, STL and OBJ, flat where STL is") {
   CHECK(mesh.indices.size() == 6);
   CHECK(mesh.normals[mesh.indices[0]] == mesh.normals[mesh.indices[2]]);
   CHECK(mesh.normals[mesh.indices[0]] != mesh.normals[mesh.indices[3]]);
+}
+
+TEST_CASE("PLY's colours of every type") {
+  const auto colours = [](const std::string& type, const std::string& first,
+                          const std::string& second) {
+    const std::string of = "property " + type + " ";
+    return parse_ply(
+               "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+               "property float z\n" +
+                   of + "r\n" + of + "g\n" + of + "b\n" +
+                   "element face 1\nproperty list uchar int vertex_index\nend_header\n0 0 0 " +
+                   first + "\n1 0 0 " + second + "\n0 1 0 0 0 0\n3 0 1 2\n",
+               "file")
+        .faces;
+  };
+  for (const char* type : {"uchar", "short", "ushort", "int"}) {
+    const ObjText bytes = colours(type, "255 51 -1", "1 2 3");
+    CHECK(bytes.colours[0] == glm::vec3{1.0f, kRed, 0.0f});
+    CHECK(bytes.warnings.empty());
+  }
+  CHECK(colours("ushort", "65535 13107 0", "1 2 3").colours[0] == glm::vec3{1.0f, kRed, 0.0f});
+  const ObjText lit = colours("float", "1.25 .5 nan", "0 0 .25");
+  CHECK(lit.colours[0] == glm::vec3{1.0f, 0.5f, 0.0f});
+  CHECK(lit.warnings.empty());
+  const ObjText bright = colours("double", "255 51 0", "0 0 0");
+  CHECK(bright.colours[0] == glm::vec3{1.0f, 0.2f, 0.0f});
+  CHECK(bright.warnings.at(0) == "file: colours beyond 1: they are taken for 0 to 255");
+}
+
+TEST_CASE("a PLY's picture is its texture, or told to be missing") {
+  const TemporaryDirectory directory;
+  std::string text = text_ply();
+  text.replace(text.find("a square"), 8, "TextureFile red-blue-16x8.jpg");
+  write_file(directory.file("a.ply"), text);
+  const Scene without = load_scene(directory.file("a.ply"), {});
+  CHECK(without.textures.empty());
+  CHECK(without.warnings.at(0).ends_with("texture red-blue-16x8.jpg is missing"));
+  std::filesystem::copy_file(SOFTFOCUS_TEST_DATA "/red-blue-16x8.jpg",
+                             directory.file("red-blue-16x8.jpg"));
+  const Scene textured = load_scene(directory.file("a.ply"), {});
+  REQUIRE(textured.textures.size() == 1);
+  CHECK(textured.materials[textured.objects[0].material].texture == 0);
+  CHECK(textured.materials[textured.objects[0].material].diffuse == glm::vec3{1.0f});
 }
 
 TEST_CASE("positions far from the origin keep their bits") {
@@ -257,6 +307,13 @@ TEST_CASE("what is no PLY is refused, and where") {
   CHECK(with("7 3 0 2 3", "7 3 0 2 -1") == "file:25: face 1 has an index that is none");
   CHECK(with("element face 2", "element point 2") ==
         "file: has no faces; points alone cannot be drawn, a mesh would be right");
+  CHECK(with("vertex_indices", "corners") == "file: its faces have no list vertex_indices");
+  std::string mixed = text;
+  for (std::size_t at = mixed.find("\nelement"); at != mixed.npos;
+       at = mixed.find("\nelement", at + 2)) {
+    mixed.insert(at, "\r");
+  }
+  CHECK(parse_ply(mixed, "file").faces.faces.size() == 2);
   CHECK(with("float y", "float height") == "file: the vertices have no x, y and z");
   std::string binary = binary_ply(false);
   binary.pop_back();
@@ -269,8 +326,9 @@ TEST_CASE("what is no STL is refused, and where") {
         "right");
   CHECK(stl_complaint(binary_stl("a").substr(0, 130)) ==
         "file: is no STL, or cut off: 130 bytes where 134 for 1 facets would be right");
-  CHECK(stl_complaint(binary_stl("a", 2e9f)) ==
-        "file: facet 1 has a coordinate that is no number, or beyond 1e9");
+  CHECK(stl_complaint(binary_stl("a", 2e9f)) == "file: has no facets; a mesh would be right");
+  CHECK(stl_complaint(binary_stl("solid a").substr(0, 130)) ==
+        "file: is no STL, or cut off: 130 bytes where 134 for 1 facets would be right");
   CHECK(stl_complaint("solid\nendsolid\n") == "file: has no facets; a mesh would be right");
   CHECK(stl_complaint("solid\nfacet normal 0 0 1\nvertex 0 0\nendfacet") ==
         "file:4: \"endfacet\" is no number");
