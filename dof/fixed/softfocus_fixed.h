@@ -93,11 +93,11 @@ int softfocus_fixed_table_half(const softfocus_fixed_lens* lens,
 /* --- the filter --- */
 
 typedef enum softfocus_fixed_colour {
-  SOFTFOCUS_FIXED_RGBA8 = 0,  /* bytes r, g, b, a; a goes through */
-  SOFTFOCUS_FIXED_RGB565 = 1, /* uint16_t, red in the high bits */
-  SOFTFOCUS_FIXED_RGBA16F = 2, /* 4 halves as uint16_t; a goes through. Colours that are
-                                  infinite count as 65504 of their sign, NaN as 0. For
-                                  softfocus_fixed_begin_half() */
+  SOFTFOCUS_FIXED_RGBA8 = 0,         /* bytes r, g, b, a; a goes through */
+  SOFTFOCUS_FIXED_RGB565 = 1,        /* uint16_t, red in the high bits */
+  SOFTFOCUS_FIXED_RGBA16F = 2,       /* 4 halves as uint16_t; a goes through. Colours that are
+                                        infinite count as 65504 of their sign, NaN as 0. For
+                                        softfocus_fixed_begin_half() */
   SOFTFOCUS_FIXED_RGB565_SWAPPED = 3 /* RGB565 with its two bytes swapped, as displays on
                                         SPI want it: LVGL's RGB565_SWAPPED */
 } softfocus_fixed_colour;

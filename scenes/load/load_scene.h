@@ -46,9 +46,9 @@ std::vector<SceneListing> list_scenes(const std::vector<std::filesystem::path>& 
 /// Whether `scene` names one of the scenes without end: "random:" and what should be a number.
 bool is_random_scene(std::string_view scene);
 
-/// `scene` is a .toml file, a .gltf, .glb, .obj, .ply or .stl model (any string that ends so is a path),
-/// "random:SEED" (scenes/random/random_scene.h; SEED is 0 to 2^64 - 1), or the name of a scene on
-/// the path. Throws SceneError.
+/// `scene` is a .toml file, a .gltf, .glb, .obj, .ply or .stl model (any string that ends so is a
+/// path), "random:SEED" (scenes/random/random_scene.h; SEED is 0 to 2^64 - 1), or the name of a
+/// scene on the path. Throws SceneError.
 Scene load_scene(std::string_view scene, const std::vector<std::filesystem::path>& search_path,
                  ThreadPool* pool = nullptr);
 

@@ -17,29 +17,29 @@
 namespace softfocus {
 namespace {
 
-enum class NumberKind : std::uint8_t { whole, unsigned_whole, real };
+enum class PlyKind : std::uint8_t { whole, unsigned_whole, real };
 
-struct NumberType {
+struct PlyType {
   std::string_view name, also;
   std::size_t bytes;
-  NumberKind kind;
+  PlyKind kind;
 };
 
-constexpr std::array<NumberType, 8> kTypes{{
-    {"char", "int8", 1, NumberKind::whole},
-    {"uchar", "uint8", 1, NumberKind::unsigned_whole},
-    {"short", "int16", 2, NumberKind::whole},
-    {"ushort", "uint16", 2, NumberKind::unsigned_whole},
-    {"int", "int32", 4, NumberKind::whole},
-    {"uint", "uint32", 4, NumberKind::unsigned_whole},
-    {"float", "float32", 4, NumberKind::real},
-    {"double", "float64", 8, NumberKind::real},
+constexpr std::array<PlyType, 8> kTypes{{
+    {"char", "int8", 1, PlyKind::whole},
+    {"uchar", "uint8", 1, PlyKind::unsigned_whole},
+    {"short", "int16", 2, PlyKind::whole},
+    {"ushort", "uint16", 2, PlyKind::unsigned_whole},
+    {"int", "int32", 4, PlyKind::whole},
+    {"uint", "uint32", 4, PlyKind::unsigned_whole},
+    {"float", "float32", 4, PlyKind::real},
+    {"double", "float64", 8, PlyKind::real},
 }};
 
 struct Property {
   std::string name;
-  const NumberType* type;
-  const NumberType* count_type;  // of a list; else null
+  const PlyType* type;
+  const PlyType* count_type;  // of a list; else null
 };
 
 struct Element {
@@ -76,12 +76,12 @@ struct Reader {
     return found;
   }
 
-  double number(const NumberType& type) {
+  double number(const PlyType& type) {
     if (form == Form::text) {
       const std::string_view text = word();
       // A float is rounded once; whole numbers are below 2^53.
       std::optional<double> read;
-      if (type.bytes == 4 && type.kind == NumberKind::real) {
+      if (type.bytes == 4 && type.kind == PlyKind::real) {
         if (const auto single = decimal_to_float(text)) read = *single;
       } else {
         read = decimal_to_double(text);
@@ -96,19 +96,19 @@ struct Reader {
       bits = bits << 8 | static_cast<unsigned char>(rest[at]);
     }
     rest.remove_prefix(type.bytes);
-    if (type.kind == NumberKind::real) {
+    if (type.kind == PlyKind::real) {
       return type.bytes == 8 ? std::bit_cast<double>(bits)
                              : std::bit_cast<float>(static_cast<std::uint32_t>(bits));
     }
-    if (type.kind == NumberKind::unsigned_whole) return static_cast<double>(bits);
+    if (type.kind == PlyKind::unsigned_whole) return static_cast<double>(bits);
     if (type.bytes == 1) return static_cast<std::int8_t>(bits);
     if (type.bytes == 2) return static_cast<std::int16_t>(bits);
     return static_cast<std::int32_t>(bits);
   }
 };
 
-const NumberType& type_named(const Reader& reader, std::string_view name) {
-  for (const NumberType& type : kTypes) {
+const PlyType& type_named(const Reader& reader, std::string_view name) {
+  for (const PlyType& type : kTypes) {
     if (name == type.name || name == type.also) return type;
   }
   reader.fail(
@@ -128,7 +128,7 @@ void read_property(const Reader& reader, std::string_view line, Header& header) 
   std::string_view type = next_word(line);
   if (type == "list") {
     property.count_type = &type_named(reader, next_word(line));
-    if (property.count_type->kind == NumberKind::real)
+    if (property.count_type->kind == PlyKind::real)
       reader.fail("a list's length is no whole number");
     type = next_word(line);
   }
@@ -296,7 +296,7 @@ void read_vertices(Reader& reader, const Element& element, Growing& made) {
       const double value = reader.number(*property.type);
       if (!slots[k]) continue;
       values[*slots[k]] = value;
-      if (*slots[k] == slot_red) made.have_whole_colours = property.type->kind != NumberKind::real;
+      if (*slots[k] == slot_red) made.have_whole_colours = property.type->kind != PlyKind::real;
     }
     const auto vector = [&](Slot first) {
       return glm::dvec3{values[first], values[first + 1], values[first + 2]};

@@ -35,7 +35,7 @@ void place_positions(const std::vector<glm::dvec3>& exact, FileFaces& made) {
 namespace {
 
 // Facets that grow.
-struct Facets {
+struct StlFacets {
   std::vector<glm::dvec3> positions;
   ObjText obj;
 
@@ -73,7 +73,7 @@ std::uint32_t word_at(std::string_view bytes, std::size_t at) {
 }
 
 // 80 bytes of any text, the count, and for each facet a normal, three corners and two bytes more.
-void read_binary(std::string_view bytes, const std::string& file, Facets& facets) {
+void read_binary(std::string_view bytes, const std::string& file, StlFacets& facets) {
   const std::size_t count = bytes.size() < kHeader ? 0 : word_at(bytes, kHeader - 4);
   if (bytes.size() < kHeader || (bytes.size() - kHeader) / kFacet < count) {
     throw SceneError(file + ": is no STL, or cut off: " + std::to_string(bytes.size()) +
@@ -135,7 +135,7 @@ struct Words {
   }
 };
 
-void read_words(Words words, Facets& facets) {
+void read_words(Words words, StlFacets& facets) {
   std::uint32_t corners = 0;
   bool is_in_facet = false;
   for (std::string word = words.next(); !word.empty(); word = words.next()) {
@@ -170,7 +170,7 @@ void read_words(Words words, Facets& facets) {
 FileFaces parse_stl(std::string_view bytes, const std::string& file) {
   constexpr std::string_view kMark = "\xEF\xBB\xBF";
   if (bytes.starts_with(kMark)) bytes.remove_prefix(kMark.size());
-  Facets facets;
+  StlFacets facets;
   facets.obj.has_smoothing_groups = true;  // and all are in none: flat
   // Some binary files begin with "solid" too; their length tells them, or that no facet follows.
   const bool has_length =
