@@ -1,7 +1,8 @@
 /**
  * Depth of field on pictures with depth, scenes, shaders on an emulated GPU, and comparison of pictures:
  * the bits are the program's, on every machine. All calls wait for each other. They compute in the thread
- * that calls: in a page that must not stand still, call from a worker.
+ * that calls: in a page that must not stand still, call from a worker. Arrays that a call is given may not
+ * change until its promise settles.
  */
 
 /** Numbers of a picture: sRGB codes 0 to 255; binary32 of linear light; binary16 as bits, or as it is. */
@@ -75,9 +76,9 @@ export interface RefocusOptions {
 
 /** An array of the result's numbers. "float16" is bits, in a Uint16Array. */
 export interface ResultTypes {
-  uint8: Uint8ClampedArray;
-  float16: Uint16Array;
-  float32: Float32Array;
+  uint8: ReturnType<typeof Uint8ClampedArray.from>;
+  float16: ReturnType<typeof Uint16Array.from>;
+  float32: ReturnType<typeof Float32Array.from>;
 }
 
 /** Of the result. */
@@ -94,8 +95,8 @@ export interface ResultOptions<Type extends keyof ResultTypes> {
  * @param picture 3 or 4 channels; the fourth is not filtered
  * @param depth metres along the camera's axis, a number a pixel; infinity is the horizon. A Uint16Array
  *   holds binary16 as bits
- * @returns a picture with the same type and channels, unless the options say otherwise. For a canvas:
- *   `{ type: "uint8", channels: 4 }`
+ * @returns a picture with the same type (of binary64 binary32) and channels, unless the options say otherwise.
+ *   For a canvas: `{ type: "uint8", channels: 4 }`
  * @throws SoftfocusError for what cannot be
  */
 export function refocus<Type extends keyof ResultTypes>(
@@ -105,7 +106,7 @@ export function refocus<Type extends keyof ResultTypes>(
 export function refocus<Data extends Numbers>(
   picture: Picture<Data>, depth: Float32Array | Float64Array | Uint16Array,
   options?: RefocusOptions & { channels?: 3 | 4 },
-): Promise<Picture<Data>>;
+): Promise<Picture<Data extends Float64Array ? Float32Array : Data>>;
 
 /** What an option of the command line may be: `maxCoc: 8` is --max-coc 8, `true` a flag, a list several
  * words. */

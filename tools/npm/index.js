@@ -19,6 +19,9 @@ const kDefaults = { method: "disc-layers", profile: "ieee", focalLengthMm: 50, f
                     sensorWidthMm: 36, sensorHeightMm: 24, fovYDegrees: 0, cocScale: 1,
                     blurAtInfinityPx: 0, maxRadiusPx: 0, leak: 1, budget: 0.25, maxError: 0.02 };
 
+// Of node's Buffer too, whose own slice() is a view.
+const copy_of = (array) => Object.getPrototypeOf(Uint8Array.prototype).slice.call(array);
+
 export async function open({ threads = 0 } = {}) {
   await restart(threads);
   return job((engine) => ({ threads: engine.threads, build: engine.build,
@@ -181,9 +184,9 @@ export class Shader {
     const place = engine.take(4);
     engine.run("compile_shader", source, place);
     this.#place = engine.pointer(place);
-    this.#engine = engine;
     for (const [name, numbers] of this.#uniforms) this.#set(engine, name, numbers);
     for (const [name, texture] of this.#textures) this.#set_texture(engine, name, texture);
+    this.#engine = engine;
     return this.#place;
   }
 
@@ -212,7 +215,7 @@ export class Shader {
     const sampler = engine.put_struct(["int", kFilters[filter]], ["int", edge], ["int", edge], ["int", 0],
                                       ["int", edge]);
     engine.run("set_texture", this.#place, engine.put_text(name), texels, sampler);
-    this.#textures.set(name, { ...texture, data: texture.data.slice() });
+    this.#textures.set(name, { ...texture, data: copy_of(texture.data) });
   }
 
   uniforms() {

@@ -51,9 +51,10 @@ export function result_type(name, values) {
 
 /** The values with that many channels, each further one as it is, or opaque. */
 export function with_channels({ width, height, channels, values }, count, array = values.constructor) {
-  const { opaque } = typed("the result", new array(0)).type;
+  const to = typed("the result", new array(0)).type, from = typed("the picture", values).type;
+  const { opaque } = to;
   const result = new array(width * height * count);
-  const same = array === values.constructor;
+  const same = to.code === from.code && opaque === from.opaque;
   if (same && count === channels) {
     result.set(values);
     return result;

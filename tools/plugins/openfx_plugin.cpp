@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <exception>
 #include <new>
 #include <string>
 #include <string_view>
@@ -271,9 +272,15 @@ Status render(Effect* effect, PropertySet* in) {
   get.get_doubles(in, "OfxImageEffectPropRenderScale", 2, scale);
   get.get_ints(in, "OfxImageEffectPropRenderWindow", 4, &window.x1);
   const Frame source{clip_of(effect, kSource), time}, output{clip_of(effect, kOutput), time};
-  if (!source.is_there() || !output.is_there()) return kFailed;
+  if (!output.is_there()) return kFailed;
+  window = common(window, output.box());
+  // Nothing is beside the source, and everywhere without one.
+  for (int y = window.y1; y < window.y2; ++y) {
+    if (window.width() > 0) std::fill_n(output.at(window.x1, y), 4 * window.width(), 0.0f);
+  }
+  if (!source.is_there()) return kOk;
   const Box& box = source.box();
-  window = common(common(window, output.box()), box);
+  window = common(window, box);
   if (window.width() <= 0 || window.height() <= 0) return kOk;
   const Frame depth{clip_of(effect, kDepth), time};
   PluginFrame frame;
@@ -342,6 +349,8 @@ Status main_entry(const char* name, const void* handle, PropertySet* in, Propert
   return kReplyDefault;
 } catch (const std::bad_alloc&) {
   return kNoMemory;
+} catch (const std::exception&) {
+  return kFailed;
 }
 
 }  // namespace

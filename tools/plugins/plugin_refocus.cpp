@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <exception>
+#include <new>
 #include <optional>
+#include <string>
 
 #include "dof/auto/auto_method.h"
 #include "dof/dof.h"
@@ -192,6 +195,12 @@ int dim(std::span<float> rgba) {
 }
 
 void refocus(const PluginSettings& settings, PluginFrame& frame) {
+  if (std::max(frame.width, frame.height) > kMaxImageSize) {
+    throw UsageError("a picture has at most " + std::to_string(kMaxImageSize) + " pixels a side");
+  }
+  for (const double number : settings.numbers) {
+    if (!std::isfinite(number)) throw UsageError("a setting is not a number");
+  }
   const DefaultFloatEnvironment environment;
   ThreadPool pool{hardware_threads()};
   DepthMap map = depth_of(settings, frame, pool);
@@ -294,7 +303,9 @@ std::string refocus_in_plugin(const PluginSettings& settings, PluginFrame frame)
   try {
     refocus(settings, frame);
     return {};
-  } catch (const UsageError& error) {
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
     return error.what();
   }
 }

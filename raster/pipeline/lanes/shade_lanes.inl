@@ -335,7 +335,12 @@ void shade_quads(const Stage& stage, const FragmentJob& job, const VisibilityTil
     const std::uint32_t* ahead = entries + kQuadsAhead * kQuads;
     if (triangle_of(ahead[kQuads - 1]) != triangle_of(ahead[-1])) fetch_vertices(triangles, ahead);
     const std::uint32_t first_triangle = triangle_of(entries[0]);
-    const bool is_one = first_triangle == triangle_of(entries[kQuads - 1]);
+    // Further quads of one triangle need not follow each other.
+    bool is_one = true;
+#pragma GCC unroll 4
+    for (std::size_t quad = 1; quad < kQuads; ++quad) {
+      is_one &= first_triangle == triangle_of(entries[quad]);
+    }
     if (!is_one || first_triangle != loaded) {
 #pragma GCC unroll 4
       for (std::size_t quad = 0; quad < kQuads; ++quad) {
