@@ -263,7 +263,9 @@ void finish_colours(const std::string& file, Growing& made) {
 // The numbers of a list, or past them.
 void read_list(Reader& reader, const Property& property, std::vector<double>* list) {
   if (list != nullptr) list->clear();
-  for (double left = reader.number(*property.count_type); left > 0.0; --left) {
+  const double count = reader.number(*property.count_type);
+  for (std::uint64_t left = count > 0.0 ? static_cast<std::uint64_t>(std::min(count, 0x1p32)) : 0;
+       left > 0; --left) {
     const double number = reader.number(*property.type);
     if (list != nullptr) list->push_back(number);
   }
