@@ -1,8 +1,8 @@
 #pragma once
 // PLY models (Turk 1994) and STL models (3D Systems 1988), as faces that are finished like OBJ's.
 //
-// Not Assimp's readers: its PLY reader of version 5.2 does not come back, or crashes, on most
-// damaged files, and multiplies decimals out with the C library's pow.
+// Not Assimp's readers: its PLY reader of version 5.2 hangs on one damaged file of fifteen, crashes
+// on some, and multiplies decimals out with the C library's pow.
 
 #include <glm/vec3.hpp>
 #include <string>
