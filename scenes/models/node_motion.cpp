@@ -131,7 +131,8 @@ std::vector<double> telling_frames(const NodeMotion& motion) {
   for (std::size_t i = 0; i < keys.size(); i += keys.size() / kMostKeys + 1) {
     frames.push_back(keys[i]);
   }
-  for (int i = 0; i <= kBetween; ++i) frames.push_back(keys.back() * i / kBetween);
+  const double last = last_frame(motion);
+  for (int i = 0; i <= kBetween; ++i) frames.push_back(last * i / kBetween);
   std::sort(frames.begin(), frames.end());
   frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
   return frames;

@@ -11,8 +11,8 @@
 
 namespace softfocus {
 
-/// From key to key: the former's value; on a straight line, or for rotations on the shorter arc; on
-/// Hermite's cubic.
+/// The way from key to key. `step` holds a value until the next key, `linear` takes the straight
+/// line, or a rotation's shorter arc, and `cubic` Hermite's cubic.
 enum class KeyForm : std::uint8_t { step, linear, cubic };
 
 /// A value by frame. Before the first key and after the last it stands still.

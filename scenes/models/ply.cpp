@@ -56,6 +56,7 @@ struct Reader {
   std::size_t line = 1;  // of text
   Form form = Form::text;
   std::string what{};  // is being read: "vertex 3"
+  bool has_a_line_a_row = false;
 
   [[noreturn]] void fail(const std::string& reason) const {
     const std::string where = form == Form::text ? ":" + std::to_string(line) : "";
@@ -74,6 +75,11 @@ struct Reader {
     rest.remove_prefix(at);
     if (found.empty()) fail("is missing: the file is cut off");
     return found;
+  }
+
+  // After a row. Some exporters write more behind it than the header says.
+  void end_row() {
+    if (has_a_line_a_row) rest.remove_prefix(std::min(rest.find_first_of("\r\n"), rest.size()));
   }
 
   double number(const PlyType& type) {
@@ -194,6 +200,13 @@ Header read_header(Reader& reader) {
   if (!has_format) reader.fail("the header has no format");
   ++reader.line;
   reader.form = form;
+  std::size_t rows = 0;
+  for (const Element& element : header.elements) {
+    if (!element.properties.empty()) rows = std::max(rows, rows + element.count);
+  }
+  const auto lines =
+      static_cast<std::size_t>(std::count(reader.rest.begin(), reader.rest.end(), line_end));
+  reader.has_a_line_a_row = form == Form::text && lines + 1 >= rows;
   return header;
 }
 
@@ -247,7 +260,8 @@ void finish_colours(const std::string& file, Growing& made) {
   }
   constexpr float kFarBeyond = 2.0f, kByte = 255.0f, kShort = 65535.0f;
   const bool are_bytes = made.have_whole_colours || most >= kFarBeyond;
-  const float one = !are_bytes ? 1.0f : most <= kByte ? kByte : kShort;
+  const bool are_shorts = made.have_whole_colours && most > kByte;
+  const float one = !are_bytes ? 1.0f : are_shorts ? kShort : kByte;
   if (are_bytes && !made.have_whole_colours) {
     obj.warnings.push_back(file + ": colours beyond 1: they are taken for 0 to 255");
   }
@@ -300,6 +314,7 @@ void read_vertices(Reader& reader, const Element& element, Growing& made) {
       values[*slots[k]] = value;
       if (*slots[k] == slot_red) made.have_whole_colours = property.type->kind != PlyKind::real;
     }
+    reader.end_row();
     const auto vector = [&](Slot first) {
       return glm::dvec3{values[first], values[first + 1], values[first + 2]};
     };
@@ -389,6 +404,7 @@ void read_faces(Reader& reader, const Element& element, bool are_strips, Growing
         read_list(reader, property, property.name == "texcoord" ? &uvs : nullptr);
       }
     }
+    reader.end_row();
     if (are_strips) {
       add_strips(reader, indices, made);
     } else {
@@ -407,6 +423,7 @@ void pass_over(Reader& reader, const Element& element) {
         reader.number(*property.type);
       }
     }
+    reader.end_row();
   }
 }
 
@@ -454,7 +471,7 @@ FileFaces parse_ply(std::string_view bytes, const std::string& file) {
     if (number >= made.positions.size() || !is_position(made.positions[number])) {
       throw SceneError(file + ": a face has vertex " + std::to_string(number) +
                        (number < made.positions.size()
-                            ? ", a coordinate of which is no number, or beyond 1e9"
+                            ? ", whose place is no number, or beyond 1e9"
                             : " of " + std::to_string(made.positions.size())));
     }
     if (has_normals) corner.normal = corner.position;

@@ -51,7 +51,7 @@ export interface RefocusOptions {
   fNumber?: number;
   /** Millimetres; 50. */
   focalLengthMm?: number;
-  /** The sensor, of which the picture is the largest part of its shape, millimetres; 36 x 24. */
+  /** The sensor, millimetres; 36 x 24. The picture takes the largest part that has its shape. */
   sensorWidthMm?: number;
   sensorHeightMm?: number;
   /** In place of the sensor, the vertical field of view, degrees: a camera's `fov` in three.js. 0: none. */

@@ -221,7 +221,7 @@ gboolean process_both(GeglOperation* operation, GeglBuffer* input, GeglBuffer* a
   gegl_buffer_set(output, wanted, 0, format, rgba.data() + 4 * first,
                   static_cast<int>(4 * sizeof(float)) * box.width);
   return TRUE;
-} catch (const std::exception&) {  // bad_alloc, or of a picture of which there is none so large
+} catch (const std::exception&) {  // bad_alloc, or the length_error of a vector
   g_warning("softfocus:refocus: there is not enough memory");
   return FALSE;
 }

@@ -174,8 +174,8 @@ void describe_in_context(Effect* effect) {
               "OfxParamPropDefault", 0, 0);
 }
 
-/// An instance's values at a time. Lengths in pixels are those of the whole size, `scale` of which
-/// is drawn.
+/// An instance's values at a time. Lengths in pixels are given for the whole size; `scale` is the
+/// part of it that is drawn.
 PluginSettings settings_at(Effect* effect, double time, double scale) {
   ParameterSet* all = nullptr;
   suites.effects->get_parameters(effect, &all);

@@ -58,7 +58,7 @@ constexpr std::array kNumbers{
     PluginNumber{parameter::kFNumber, 32.0},
     PluginNumber{parameter::kFocalLength, 300.0},
     PluginNumber{renamed(parameter::kSensorSide, "sensor-width",
-        "The sensor, of which the picture is the largest part of its shape"), 60.0},
+        "The sensor; the picture takes the largest part that has its shape"), 60.0},
     PluginNumber{preset(renamed(parameter::kSensorSide, "sensor-height", "Likewise"), 24.0), 60.0},
     PluginNumber{or_none(parameter::kFov, "Vertical field of view; 0: the sensor's"), 120.0},
     PluginNumber{parameter::kCocScale, 10.0},

@@ -135,6 +135,19 @@ TEST_CASE("steps hold, lines are straight, cubics have the keys' values and spee
   CHECK(reach(motion, 0.0) >= x_at(2.0));
 }
 
+TEST_CASE("the frames that tell a way have its last key, however many there are") {
+  for (const int count : {2, 64, 65, 66, 500}) {
+    Frames frames;
+    for (int i = 0; i < count; ++i) frames.push_back(i + 5.0);
+    NodeMotion motion = still();
+    motion.translation = track(KeyForm::linear, frames, Values(frames.size(), glm::dvec4{0.0}));
+    const Frames telling = telling_frames(motion);
+    CHECK(telling.front() == 0.0);
+    CHECK(telling.back() == last_frame(motion));
+    CHECK(telling.size() <= 130);
+  }
+}
+
 TEST_CASE("what a node moves is where its chain of nodes has it") {
   auto above = std::make_shared<NodeMotion>(still());
   above->rotation =

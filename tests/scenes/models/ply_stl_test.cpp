@@ -133,6 +133,19 @@ TEST_CASE("PLY in text and in binary of either byte order has the same faces") {
   check_same(parse_ply(returns, "file").faces, text.faces);
 }
 
+TEST_CASE("PLY's rows may have more on their line, lie on several lines, or several on one") {
+  const ObjText right = parse_ply(text_ply(), "file").faces;
+  std::string more = text_ply(), one_line = text_ply(), spread = text_ply();
+  more.replace(more.find("7 3 0 1 2\n"), 10, "7 3 0 1 2 9 1 1\n");
+  check_same(parse_ply(more, "file").faces, right);
+  for (std::size_t i = one_line.find("end_header") + 11; i + 1 < one_line.size(); ++i) {
+    if (one_line[i] == '\n') one_line[i] = ' ';
+    if (spread[i] == ' ') spread[i] = '\n';
+  }
+  check_same(parse_ply(one_line, "file").faces, right);
+  check_same(parse_ply(spread, "file").faces, right);
+}
+
 TEST_CASE("PLY's normals, coordinates of vertices and of corners, strips and polygons") {
   const std::string header =
       "ply\nformat ascii 1.0\ncomment TextureFile a b.png\nelement vertex 4\nproperty float x\n"
@@ -241,6 +254,7 @@ TEST_CASE("PLY's colours of every type") {
   const ObjText lit = colours("float", "1.25 .5 nan", "0 0 .25");
   CHECK(lit.colours[0] == glm::vec3{1.0f, 0.5f, 0.0f});
   CHECK(lit.warnings.empty());
+  CHECK(colours("float", "510 51 0", "0 0 0").colours[0] == glm::vec3{1.0f, 0.2f, 0.0f});
   const ObjText bright = colours("double", "255 51 0", "0 0 0");
   CHECK(bright.colours[0] == glm::vec3{1.0f, 0.2f, 0.0f});
   CHECK(bright.warnings.at(0) == "file: colours beyond 1: they are taken for 0 to 255");
@@ -297,7 +311,7 @@ TEST_CASE("what is no PLY is refused, and where") {
   };
   CHECK(with("1 1 .5", "1 x .5") == "file:21: vertex 2 has \"x\", which is no number");
   CHECK(with("1 1 .5", "1 inf .5") ==
-        "file: a face has vertex 2, a coordinate of which is no number, or beyond 1e9");
+        "file: a face has vertex 2, whose place is no number, or beyond 1e9");
   std::string unused = text;
   unused.replace(unused.find("vertex 4"), 8, "vertex 5");
   unused.insert(unused.find("0 2 8 9"), "nan nan nan 1 2 3 0\n");
