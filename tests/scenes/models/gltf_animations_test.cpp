@@ -207,6 +207,13 @@ TEST_CASE(
   CHECK(model.parts[1].motion == nullptr);
   CHECK(model.warnings.empty());
 
+  // Below one that stands aside.
+  Gltf below = moving_triangle();
+  below.node("\"mesh\":0");
+  below.node("\"children\":[0],\"translation\":[0,0,3]");
+  const glm::dmat4 aside = matrix_at(*load(below).parts.at(0).motion, 15.0);
+  CHECK(glm::dvec3{aside[3]} == glm::dvec3{4, 0, 3});
+
   Gltf same = triangle();
   same.floats({0, 0.5f}, "SCALAR", 1);
   same.floats({3, 0, 0, 3, 0, 0}, "VEC3", 3);
@@ -294,7 +301,9 @@ TEST_CASE("what does not move: skins, morph targets, lights") {
   gltf.more =
       ",\"skins\":[{\"joints\":[1]}],\"extensions\":{\"KHR_lights_punctual\":"
       "{\"lights\":[{\"type\":\"point\"}]}},\"animations\":[" +
-      animation(channel(1, "translation") + "," + channel(0, "weights")) + "]";
+      animation(channel(1, "translation") + "," + channel(0, "translation") + "," +
+                channel(0, "weights")) +
+      "]";
   const Model model = load(gltf);
   CHECK(corners(model) == Corners{{2, 0, 0}, {3, 0, 0}, {2, 2, 0}});
   CHECK(model.parts[0].motion == nullptr);

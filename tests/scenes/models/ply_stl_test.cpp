@@ -171,11 +171,12 @@ TEST_CASE("PLY's normals, coordinates of vertices and of corners, strips and pol
         std::vector<std::string>{"file: 1 faces of fewer than three corners are left out",
                                  "file: 1 texture coordinates are out of range, or none, and 0"});
   const FileFaces wedges = parse_ply(header +
-                                         "element face 1\nproperty list uchar int vertex_indices\n"
+                                         "element face 2\nproperty list uchar int vertex_indices\n"
                                          "property list uchar float texcoord\nend_header\n" +
-                                         vertices + "3 0 1 2 6 0 1 .5 .5 1 0\n",
+                                         vertices + "3 0 1 2 6 0 1 .5 .5 1 0\n3 0 1 3 0\n",
                                      "file");
   const ObjText& w = wedges.faces;
+  CHECK(w.uvs[static_cast<std::size_t>(w.corners[4].uv)] == glm::vec2{0.25f, 1.0f});
   CHECK(w.uvs[static_cast<std::size_t>(w.corners[1].uv)] == glm::vec2{0.5f});
   CHECK(w.uvs[static_cast<std::size_t>(w.corners[2].uv)] == glm::vec2{1.0f, 0.0f});
   const FileFaces strips =
@@ -195,6 +196,21 @@ TEST_CASE("STL in text and in binary has the same flat facets, normals or not") 
   check_same(parse_stl(binary_stl("made by hand"), "file").faces, text.faces);
   check_same(parse_stl(binary_stl("solid as some begin"), "file").faces, text.faces);
   check_same(parse_stl(binary_stl("made by hand") + "more", "file").faces, text.faces);
+  check_same(parse_stl(binary_stl("solid as some begin") + "more", "file").faces, text.faces);
+  std::string line = "solid one " + kFacet + "endsolid one";
+  for (char& c : line) c = c == '\n' ? '\r' : c;
+  check_same(parse_stl(line, "file").faces, text.faces);
+  std::string odd = "\xEF\xBB\xBFsolid\n# a comment of vertex 1\ncolor 1 0 0\n" + kFacet;
+  odd.replace(odd.find("endloop"), 7, "END LOOP");
+  odd +=
+      "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex nan 0 0\nvertex 1 0 0\nendloop\n"
+      "endfacet\n" +
+      kFacet;
+  const FileFaces less = parse_stl(odd, "file");
+  CHECK(less.faces.faces.size() == 2);
+  CHECK(less.faces.positions.size() == 6);
+  CHECK(less.faces.warnings.at(0) ==
+        "file: 1 facets with a coordinate that is no number, or beyond 1e9, are left out");
   const FileFaces two =
       parse_stl("SOLID a\r\n" + kFacet + "endsolid a\nsolid b\n" + kFacet, "file");
   CHECK(two.faces.faces.size() == 2);
@@ -315,7 +331,7 @@ TEST_CASE("what is no PLY is refused, and where") {
   std::string unused = text;
   unused.replace(unused.find("vertex 4"), 8, "vertex 5");
   unused.insert(unused.find("0 2 8 9"), "nan nan nan 1 2 3 0\n");
-  CHECK(parse_ply(unused, "file").faces.positions.size() == 5);
+  CHECK(parse_ply(unused, "file").faces.positions.at(4) == glm::vec3{0.0f});
   CHECK(with("7 3 0 2 3", "7 3 0 2") == "file:26: face 1 is missing: the file is cut off");
   CHECK(with("7 3 0 2 3", "7 3 0 2 4") == "file: a face has vertex 4 of 4");
   CHECK(with("7 3 0 2 3", "7 3 0 2 -1") == "file:25: face 1 has an index that is none");
