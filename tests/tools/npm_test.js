@@ -132,6 +132,9 @@ const kTests = {
     const codes = Uint8ClampedArray.from({ length: width * height * 4 }, (_, i) => i);
     const bytes = await softfocus.refocus({ width, height, data: Buffer.from(codes) }, depth, { method: "pinhole" });
     assert.deepStrictEqual(bytes.data, Uint8Array.from(codes));
+    const clamped = await softfocus.refocus({ width, height, data: Uint8Array.from(codes) }, depth,
+                                            { method: "pinhole", type: "uint8" });
+    assert.deepStrictEqual(clamped.data, codes);
     const same = await softfocus.refocus({ width, height, data: codes }, depth, { method: "pinhole" });
     assert.deepStrictEqual(same.data, codes);
     const light = await softfocus.refocus(same, depth, { method: "pinhole", type: "float32", channels: 3 });

@@ -209,6 +209,7 @@ TEST_CASE("STL in text and in binary has the same flat facets, normals or not") 
   const FileFaces less = parse_stl(odd, "file");
   CHECK(less.faces.faces.size() == 2);
   CHECK(less.faces.positions.size() == 6);
+  CHECK(less.faces.faces[1].corner_count == 3);
   CHECK(less.faces.warnings.at(0) ==
         "file: 1 facets with a coordinate that is no number, or beyond 1e9, are left out");
   const FileFaces two =

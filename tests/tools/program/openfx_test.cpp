@@ -14,6 +14,7 @@ using namespace softfocus;
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdarg>
 #include <map>
 #include <string>
@@ -408,6 +409,9 @@ TEST_CASE("OpenFX: the plug-in needs the whole picture, and without a depth is t
   CHECK(*host.out.find<std::string>("OfxPropName") == "Source");
   CHECK(host.render() == kOk);
   CHECK(host.result() == host.sharp());
+  host.connect("Source", nullptr, 4);
+  CHECK(host.render() == kOk);
+  CHECK(host.result() == std::vector<float>(3 * kWidth * kHeight));
 #else
   skip("", "a build without the shared library");
 #endif
@@ -420,6 +424,9 @@ TEST_CASE("OpenFX: a setting that cannot be is a message, and the picture stays"
   CHECK(host.render() == kFailed);
   CHECK(said == "near must be less than far");
   CHECK(host.result() == host.sharp());
+  host.set("near", std::nan(""));
+  CHECK(host.render() == kFailed);
+  CHECK(said == "a setting is not a number");
 #else
   skip("", "a build without the shared library");
 #endif
