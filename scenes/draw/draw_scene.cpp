@@ -116,18 +116,23 @@ std::uint32_t vertex_count(const SurfaceDraw& surface) {
 }
 
 template <std::size_t N>
-SurfaceFragmentStage<N> fragment_stage(const SurfaceDraw& surface, const Profile& profile) {
-  return {surface.texture, surface.input.material->sampler, profile, surface.opacity,
-          surface.variant};
+SurfaceFragmentStage<N> fragment_stage(const PreparedScene& prepared, const SurfaceDraw& surface,
+                                       const Profile& profile) {
+  return {.texture = surface.texture,
+          .sampler = surface.input.material->sampler,
+          .profile = profile,
+          .opacity = surface.opacity,
+          .variant = surface.variant,
+          .texture_reads = prepared.texture_reads};
 }
 
 /// For variants of N varyings.
 template <std::size_t N>
-void draw_slowly(const SurfaceDraw& surface, std::span<const std::uint32_t> indices,
-                 RenderPass& pass) {
+void draw_slowly(const PreparedScene& prepared, const SurfaceDraw& surface,
+                 std::span<const std::uint32_t> indices, RenderPass& pass) {
   draw(pass, surface.state, indices, vertex_count(surface),
        SurfaceVertexStage<N>{surface.input, surface.variant},
-       fragment_stage<N>(surface, pass.profile));
+       fragment_stage<N>(prepared, surface, pass.profile));
 }
 
 std::vector<ShaderTexture> shader_textures(const PreparedScene& prepared,
@@ -168,7 +173,7 @@ void draw_surface(const PreparedScene& prepared, const SurfaceDraw& surface,
   if (surface.shaders != nullptr) return draw_by_shaders(prepared, surface, indices, pass);
   const SurfaceVariant& variant = surface.variant;
   if (can_draw_in_lanes(pass, surface.state)) {
-    auto in_lanes = fragment_stage<kMostSurfaceVaryings>(surface, pass.profile);
+    auto in_lanes = fragment_stage<kMostSurfaceVaryings>(prepared, surface, pass.profile);
     in_lanes.decoded = decoded(prepared, surface.texture);
     in_lanes.decoded_opacity = decoded(prepared, surface.opacity.texture);
     return draw_in_lanes(pass, surface.state, indices, vertex_count(surface),
@@ -176,12 +181,12 @@ void draw_surface(const PreparedScene& prepared, const SurfaceDraw& surface,
                          surface_lane_stages(variant, pass.isa));
   }
   switch (surface_layout(variant).count) {
-    case 4: return draw_slowly<4>(surface, indices, pass);
-    case 6: return draw_slowly<6>(surface, indices, pass);
-    case 7: return draw_slowly<7>(surface, indices, pass);
-    case 9: return draw_slowly<9>(surface, indices, pass);
-    case 13: return draw_slowly<13>(surface, indices, pass);
-    default: return draw_slowly<kMostSurfaceVaryings>(surface, indices, pass);
+    case 4: return draw_slowly<4>(prepared, surface, indices, pass);
+    case 6: return draw_slowly<6>(prepared, surface, indices, pass);
+    case 7: return draw_slowly<7>(prepared, surface, indices, pass);
+    case 9: return draw_slowly<9>(prepared, surface, indices, pass);
+    case 13: return draw_slowly<13>(prepared, surface, indices, pass);
+    default: return draw_slowly<kMostSurfaceVaryings>(prepared, surface, indices, pass);
   }
 }
 
@@ -581,6 +586,7 @@ void draw_triangles(PreparedScene& prepared, const CameraMatrices& camera, doubl
   make_sized(edges->other, picture.width, picture.height);
   make_sized(edges->coverage, picture.width, picture.height, Format::r8);
   const EdgeTargets to{edges->samples, &edges->other, &edges->coverage};
+  prepared.texture_reads = edges->samples / 2;
   if (in_lanes) {
     if (isa == Isa::scalar) pass.isa = Isa::baseline;
     if (isa == Isa::scalar) decode_textures(prepared, pool);
@@ -592,6 +598,7 @@ void draw_triangles(PreparedScene& prepared, const CameraMatrices& camera, doubl
     draw_lit(prepared, camera, frame, layers, pool);
     find_scene_edges(prepared, camera, frame, picture, to, pool);
   }
+  prepared.texture_reads = 1;
   // Shadows are put into pictures, of what pixels' centres show.
   if (prepared.shadows) take_shown_colours(picture, edges->coverage, edges->other, pool);
 }

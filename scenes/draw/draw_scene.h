@@ -106,6 +106,7 @@ struct PreparedScene {
   /// Objects that are not drawn, though they cast shadows: an entry each, or none at all.
   std::vector<std::uint8_t> hidden{};
   bool keeps_depth = false;   ///< `depth` is wanted once the scene is drawn
+  int texture_reads = 1;      ///< of a pixel with edges (surfaces/surface_stages.h)
   std::size_t triangles = 0;  ///< of the objects that draw_layers() has drawn as such
   /// Told how many points of soft lights have been drawn by; may be empty.
   std::function<void(int points)> on_light_points = {};

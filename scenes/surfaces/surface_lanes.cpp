@@ -133,7 +133,9 @@ struct SurfaceFragmentLanes {
   // is sampled, and the highlights, which are else in the colour.
   static constexpr std::size_t kRed = 0, kGreen = 1, kBlue = 2, kDepth = 3, kU = 4, kV = 5,
                                kLod = 6, kHighlight = 7;
-  static constexpr std::size_t kInputs = !uvs ? 4 : specular ? 10 : 7;
+  // Differences of u and v along x, then along y, if there is more than one read of the texture.
+  static constexpr std::size_t kDifferences = specular ? 10 : 7;
+  static constexpr std::size_t kInputs = uvs ? kDifferences + 4 : 4;
   const FragmentStage& stage;
   const SurfaceVariant variant = stage.variant;
 
@@ -147,6 +149,12 @@ struct SurfaceFragmentLanes {
       put(kU, u);
       put(kV, v);
       put(kLod, level_of_detail_of_quads(*stage.decoded, stage.profile, u, v));
+      if (stage.texture_reads > 1) {
+        put(kDifferences, spread<1>(u) - spread<0>(u));
+        put(kDifferences + 1, spread<1>(v) - spread<0>(v));
+        put(kDifferences + 2, spread<2>(u) - spread<0>(u));
+        put(kDifferences + 3, spread<2>(v) - spread<0>(v));
+      }
     }
     if constexpr (specular) {
       const Vec3Lanes highlight = highlights(in);
@@ -188,9 +196,13 @@ struct SurfaceFragmentLanes {
                                             std::array<Floats, 4>* colours) const {
     const int count = batch.vectors();
     std::array<RgbaLanes, kMostSampled> texels;
-    sample_lanes(*stage.decoded, stage.sampler, stage.profile,
-                 {batch.inputs[kU].data(), batch.inputs[kV].data(), batch.inputs[kLod].data()},
-                 count, texels.data());
+    if (stage.texture_reads > 1) {
+      read_texture(batch, texels.data());
+    } else {
+      sample_lanes(*stage.decoded, stage.sampler, stage.profile,
+                   {batch.inputs[kU].data(), batch.inputs[kV].data(), batch.inputs[kLod].data()},
+                   count, texels.data());
+    }
     for (int i = 0; i < count; ++i) {
       const RgbaLanes& texel = texels[static_cast<std::size_t>(i)];
       colours[i][0] *= texel.r;
@@ -198,6 +210,40 @@ struct SurfaceFragmentLanes {
       colours[i][2] *= texel.b;
       if constexpr (!specular) continue;
       for (std::size_t c = 0; c < 3; ++c) colours[i][c] += batch.input(kHighlight + c, i);
+    }
+  }
+
+  // The mean of several reads. Not inlined: draws of one read a pixel would be slower.
+  [[gnu::noinline]] void read_texture(const FragmentBatch<kInputs>& batch,
+                                      RgbaLanes* texels) const {
+    const int count = batch.vectors();
+    alignas(64) std::array<float, FragmentBatch<kInputs>::kMost> u, v;
+    std::array<RgbaLanes, kMostSampled> read;
+    std::fill_n(texels, count, RgbaLanes{});
+    for (const glm::ivec2 place : texture_read_places(stage.texture_reads)) {
+      const Floats x = splat(static_cast<float>(place.x) * (1.0f / 256.0f));
+      const Floats y = splat(static_cast<float>(place.y) * (1.0f / 256.0f));
+      for (int i = 0; i < count; ++i) {
+        const auto to = static_cast<std::size_t>(i * kLanes);
+        store(&u[to], batch.input(kU, i) + (batch.input(kDifferences, i) * x +
+                                            batch.input(kDifferences + 2, i) * y));
+        store(&v[to], batch.input(kV, i) + (batch.input(kDifferences + 1, i) * x +
+                                            batch.input(kDifferences + 3, i) * y));
+      }
+      sample_lanes(*stage.decoded, stage.sampler, stage.profile,
+                   {u.data(), v.data(), batch.inputs[kLod].data()}, count, read.data());
+      for (int i = 0; i < count; ++i) {
+        const RgbaLanes& texel = read[static_cast<std::size_t>(i)];
+        texels[i].r += texel.r;
+        texels[i].g += texel.g;
+        texels[i].b += texel.b;
+      }
+    }
+    const float share = 1.0f / static_cast<float>(stage.texture_reads);
+    for (int i = 0; i < count; ++i) {
+      texels[i].r *= share;
+      texels[i].g *= share;
+      texels[i].b *= share;
     }
   }
 

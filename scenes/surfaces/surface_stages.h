@@ -7,11 +7,13 @@
 #include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
 #include <span>
 
 #include "raster/images/decoded_texture.h"
 #include "raster/images/sampler.h"
 #include "raster/numbers/vector_math.h"
+#include "raster/pipeline/multisample.h"
 #include "raster/pipeline/stages.h"
 #include "scenes/scene.h"
 #include "scenes/surfaces/lighting.h"
@@ -135,6 +137,16 @@ struct SurfaceVertexStage {
   }
 };
 
+/// Where a pixel reads its base colour's texture, beside its centre, in 1/256 pixel: there 1 time,
+/// 2 or 4 times at the standard places of as many samples. The texel is the sum in their order,
+/// times 1 / reads; all are of the centre's level of detail. What a texture shows within a pixel is
+/// then averaged as its samples average edges: one read is now sharper, now softer than the mean,
+/// by where among texels it falls.
+inline std::span<const glm::ivec2> texture_read_places(int reads) {
+  static constexpr std::array<glm::ivec2, 2> kTwo{{{-64, -64}, {64, 64}}};
+  return reads == 2 ? std::span<const glm::ivec2>{kTwo} : sample_places(reads);
+}
+
 /// For variants of N varyings or fewer.
 template <std::size_t N>
 struct SurfaceFragmentStage {
@@ -150,6 +162,7 @@ struct SurfaceFragmentStage {
   // For the form in lanes.
   const DecodedTexture* decoded = nullptr;
   const DecodedTexture* decoded_opacity = nullptr;
+  int texture_reads = 1;  ///< texture_read_places()
   SurfaceLayout layout = surface_layout(variant);
 
   bool discards() const { return variant.holed; }
@@ -165,7 +178,7 @@ struct SurfaceFragmentStage {
     const bool back = variant.two_sided && !in.front_facing;
     const std::size_t side = back ? layout.back : layout.kFront;
     glm::vec3 colour{in.varyings[side], in.varyings[side + 1], in.varyings[side + 2]};
-    if (may_have_uvs(N) && variant.textured) colour *= glm::vec3{texel(*texture, sampler, in)};
+    if (may_have_uvs(N) && variant.textured) colour *= base_texel(in);
     if (may_be_specular(N) && variant.specular) {
       const std::size_t at = back ? layout.back_highlight : layout.highlight;
       colour += glm::vec3{in.varyings[at], in.varyings[at + 1], in.varyings[at + 2]};
@@ -179,6 +192,22 @@ struct SurfaceFragmentStage {
     const std::size_t u = SurfaceLayout::kTexture, v = u + 1;
     const float lod = level_of_detail(of, {in.ddx[u], in.ddx[v]}, {in.ddy[u], in.ddy[v]}, profile);
     return sample(of, by, {in.varyings[u], in.varyings[v]}, lod, profile);
+  }
+
+  glm::vec3 base_texel(const Fragment<N>& in) const {
+    if (texture_reads == 1) return glm::vec3{texel(*texture, sampler, in)};
+    const std::size_t u = SurfaceLayout::kTexture, v = u + 1;
+    const float lod =
+        level_of_detail(*texture, {in.ddx[u], in.ddx[v]}, {in.ddy[u], in.ddy[v]}, profile);
+    const auto moved = [&](std::size_t i, glm::vec2 by) {
+      return in.varyings[i] + (in.ddx[i] * by.x + in.ddy[i] * by.y);
+    };
+    glm::vec3 sum{0.0f};
+    for (const glm::ivec2 place : texture_read_places(texture_reads)) {
+      const glm::vec2 by = glm::vec2{place} * (1.0f / 256.0f);
+      sum += glm::vec3{sample(*texture, sampler, {moved(u, by), moved(v, by)}, lod, profile)};
+    }
+    return sum * (1.0f / static_cast<float>(texture_reads));
   }
 };
 
