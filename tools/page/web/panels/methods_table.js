@@ -28,9 +28,9 @@ export function make_methods_table({ engine, methods, truth, choose, picture_sho
     if (!result) return [element("td", {}, "–"), element("td", {}, "–")];
     if (result.error) return [element("td", { colspan: 2, title: result.error }, "not here")];
     const best = Math.min(...[...results.values()].map((x) => x.flip_mean ?? Infinity));
+    const flip = result.flip_mean.toFixed(3);
     const press = element("button", { type: "button", class: "cell",
-                                      "aria-label": `Use ${name} with radius ${radius}` },
-                          result.flip_mean.toFixed(3));
+                                      "aria-label": `${flip}: use ${name} with radius ${radius}` }, flip);
     press.addEventListener("click", () => choose(name, radius));
     const error = element("td", { class: result.flip_mean <= best ? "measured best" : "measured" }, press);
     error.style.setProperty("--part", `${Math.min(100, 300 * result.flip_mean)}%`);
