@@ -71,8 +71,8 @@ struct LensViewInput {
   LensViewMemory* memory = nullptr;             ///< to use again, if there is one
   std::shared_ptr<const StandIns> stand_ins{};  ///< of the scene's views, if any
   /// Of accumulation, filtered-views and ray-traced without `until` and `by_tile`: the samples that
-  /// are in, if `progress` has thrown. The picture goes on from there, to the same bits. Of no samples
-  /// at first; null: it cannot go on.
+  /// are in, if `progress` has thrown. The picture goes on from there, to the same bits. Of no
+  /// samples at first; null: it cannot go on.
   SampleSums* begun = nullptr;
 };
 

@@ -122,8 +122,8 @@ struct Page {
   std::shared_ptr<GpuScene> gpu_scene;
   Pixels pixels;
   Bytes saved;  ///< the file that `save` made
-  /// Set from another thread: the request that runs, or is on its way here, ends soon. It is cleared
-  /// there before a request is sent.
+  /// Set from another thread: the request that runs, or is on its way here, ends soon. It is
+  /// cleared there before a request is sent.
   std::atomic<std::int32_t> cancel{0};
 };
 

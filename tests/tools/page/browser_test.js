@@ -1101,6 +1101,11 @@ async function run_one(browsers, address, { claim, run, options }) {
   }
 }
 
+const kOfOneFile = [
+  ["one file, opened from disk, has the program's bits", equals_program],
+  ["in one file too whatever the visitor does ends a slow frame", slow_frame_gives_way],
+];
+
 async function main() {
   const started = [];
   const started_with = (...words) => {
@@ -1127,10 +1132,10 @@ async function main() {
       if (wanted && !one.claim.includes(wanted)) continue;
       if (!await run_one(browsers, address, one)) ++failed;
     }
-    if (single_file && !wanted) {
-      const one = { claim: "one file, opened from disk, has the program's bits", options: {},
-                    run: equals_program };
-      if (!await run_one(browsers, pathToFileURL(path.resolve(single_file)).href, one)) ++failed;
+    for (const [claim, run] of single_file ? kOfOneFile : []) {
+      if (wanted && !claim.includes(wanted)) continue;
+      const place = pathToFileURL(path.resolve(single_file)).href;
+      if (!await run_one(browsers, place, { claim, run, options: {} })) ++failed;
     }
   } finally {
     server.removeAllListeners("exit");
