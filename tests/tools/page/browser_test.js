@@ -305,7 +305,7 @@ test("holes, the depth's fit and circles change a picture as the program's optio
   }
   assert.strictEqual(seen.size, 3);
   await page.locator("#reading-holes").selectOption("refuse");
-  assert.match(await error_line(page), /--holes refuse: /);
+  assert.match(await error_line(page), /^holes refuse: /);
   assert.strictEqual(await page.locator("#reading-holes").inputValue(), "infinity");
 
   await open("wide_depth.pfm");
