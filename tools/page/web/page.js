@@ -304,16 +304,18 @@ async function go_back(line) {
   show_error(before ? `${line}; what was open before is here again` : line);
 }
 
+let turn = Promise.resolve();
+let newest = 0;
+
 /**
  * Opens a scene or case; what is there stays if it cannot be. `words` are a link's, `read` reads
  * the visitor's files, `state` is all else that is wanted. Resolves to warnings, or to null. Of
  * several that wait the newest alone is opened.
  */
-let turn = Promise.resolve();
-let newest = 0;
 function open(what, options = {}) {
   const mine = ++newest;
-  turn = turn.then(() => (mine === newest ? open_now(what, options) : null));
+  const run = () => (mine === newest ? open_now(what, options) : null);
+  turn = turn.then(run, run);
   return turn;
 }
 
