@@ -355,6 +355,22 @@ test("of many changes only the newest is drawn", async () => {
   assert.deepStrictEqual(frames.timings(), []);  // they are of another setting
 });
 
+test("a frame that becomes late after a change gives way to the next", async () => {
+  const { first_state, make_store } = await module_of("state.js");
+  const { make_frames } = await module_of("frames.js");
+  let cancelled = 0;
+  const engine = { ask: () => new Promise(() => {}), cancel_background() {},
+                   cancel_running() { ++cancelled; } };
+  const frames = make_frames({ engine, store: make_store(first_state()), moving: () => false, paint() {},
+                               on_error() {}, on_settled() {}, on_frame() {} });
+  frames.set_open(true);
+  frames.want();
+  frames.want();
+  assert.strictEqual(cancelled, 0);
+  await new Promise((done) => setTimeout(done, 200));
+  assert.strictEqual(cancelled, 1);
+});
+
 async function main() {
   let failed = 0;
   let running = "";

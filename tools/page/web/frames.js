@@ -37,6 +37,7 @@ export function make_frames({ engine, store, moving, paint, on_frame, on_error, 
   let whole_ms = 0;     // what a whole frame is thought to take
   let drawn_ms = 0;     // of the last drawing
   let timer = 0;
+  let way_timer = 0;
   let timings = [];
   let timed = "";       // the setting that they are of
 
@@ -58,6 +59,16 @@ export function make_frames({ engine, store, moving, paint, on_frame, on_error, 
       clearTimeout(timer);
       timer = setTimeout(pump, rest + 1);
     }
+  }
+
+  // Ends the running frame, once it is late, for the state has changed.
+  function give_way() {
+    clearTimeout(way_timer);
+    if (!running || !dirty) return;
+    const limit_ms = running.preview === 1 ? kSmoothMs : kLateMs;
+    const rest = running.began + limit_ms - performance.now();
+    if (rest <= 0) engine.cancel_running();
+    else way_timer = setTimeout(give_way, rest + 1);
   }
 
   // The edited side comes last: the truth and the pixel are asked of the last frame.
@@ -119,9 +130,7 @@ export function make_frames({ engine, store, moving, paint, on_frame, on_error, 
       on_settled(false);
       if (by_hand) last_input = performance.now();
       engine.cancel_background();
-      const late = running && performance.now() - running.began >
-                   (running.preview === 1 ? kSmoothMs : kLateMs);
-      if (late && (by_hand || !moving())) engine.cancel_running();
+      if (by_hand || !moving()) give_way();
       pump();
     },
     pause(on) {
