@@ -118,7 +118,7 @@ void add_filtered_views(FilteredViewsBuffer& buffer, const LensViewInput& input,
   const int views = static_cast<int>(buffer.cells.views.size());
   const bool plain = buffer.cells.per_cell == 1;
   const int step = plain ? kLensViewGroup : kSampleGroup;
-  for (int begin = 0; begin < views; begin += step) {
+  for (int begin = sums.count; begin < views; begin += step) {
     const int end = std::min(begin + step, views);
     if (plain) {
       add_lens_views(buffer.views, input, begin, end, sums, pool);
@@ -144,8 +144,12 @@ SampledPicture filtered_views(FilteredViewsBuffer& buffer, const LensViewInput& 
                               ThreadPool& pool) {
   const Sampling& sampling = input.sampling;
   if (sampling.by_tile) return filtered_views_by_tile(buffer, input, pool);
-  SampleSums& sums = buffer.sums;
-  clear_sums(sums);
+  SampleSums& sums = input.begun != nullptr ? *input.begun : buffer.sums;
+  if (input.begun == nullptr) {
+    clear_sums(sums);
+  } else if (sums.count == 0) {
+    sums = make_sample_sums(input.pinhole.width, input.pinhole.height);
+  }
   if (!sampling.until) {
     set_views(buffer, input, sampling.samples);
     add_filtered_views(buffer, input, sums, pool);

@@ -57,7 +57,7 @@ void draw_views(FilteredViewsBuffer& buffer, const LensViewInput& input, int beg
 void spread_views(const FilteredViewsBuffer& buffer, int begin, int end, std::span<const int> tiles,
                   SampleSums& sums, ThreadPool& pool);
 
-/// Draws, spreads and adds all of the buffer's views.
+/// Draws, spreads and adds the buffer's views, but for the first that the sums count already.
 void add_filtered_views(FilteredViewsBuffer& buffer, const LensViewInput& input, SampleSums& sums,
                         ThreadPool& pool);
 

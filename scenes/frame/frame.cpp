@@ -204,6 +204,7 @@ LensViewInput views_of(const Shot& shot, const DrawnFrame& drawn, const UsedLens
   } else if (memory.prepared) {
     views.prepared = &*memory.prepared;
   }
+  if (memory.begun) views.begun = &*memory.begun;
   return views;
 }
 

@@ -176,6 +176,8 @@ struct FrameMemory {
   LensViewMemory views{};
   Image picture{};       ///< memory for the next, if it has its size
   bool is_last = false;  ///< views of the lens may take `prepared`
+  /// If the picture is to go on after FrameHooks::on_samples has thrown: as LensViewInput has it.
+  std::optional<SampleSums> begun{};
 };
 
 /// The frame of a shot. Throws LensError, and what a library throws that fails. The same bits for

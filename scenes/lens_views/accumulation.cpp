@@ -43,7 +43,9 @@ bool is_power_of_two(int n) { return std::has_single_bit(static_cast<unsigned>(n
 SampledPicture take_samples(const LensViewInput& input, const AddSamples& add_samples, int step,
                             ThreadPool& pool) {
   const Sampling& sampling = input.sampling;
-  SampleSums sums = make_sample_sums(input.pinhole.width, input.pinhole.height);
+  SampleSums own;
+  SampleSums& sums = input.begun != nullptr ? *input.begun : own;
+  if (sums.count == 0) sums = make_sample_sums(input.pinhole.width, input.pinhole.height);
   SampleSums first_half;
   SampledPicture result;
   while (sums.count < sampling.samples) {

@@ -41,6 +41,7 @@ struct Sampling {
 /// The radius of the aperture in metres: A / 2, times the user's exaggeration of the circles.
 double aperture_radius_m(const ThinLens& lens, double coc_scale);
 
+struct SampleSums;
 struct AccumulationBuffer;
 struct FilteredViewsBuffer;
 struct WarpedViewsBuffer;
@@ -69,6 +70,10 @@ struct LensViewInput {
   PreparedScene* prepared = nullptr;
   LensViewMemory* memory = nullptr;             ///< to use again, if there is one
   std::shared_ptr<const StandIns> stand_ins{};  ///< of the scene's views, if any
+  /// Of accumulation, filtered-views and ray-traced without `until` and `by_tile`: the samples that
+  /// are in, if `progress` has thrown. The picture goes on from there, to the same bits. Of no
+  /// samples at first; null: it cannot go on.
+  SampleSums* begun = nullptr;
 };
 
 struct SampledPicture {

@@ -53,11 +53,12 @@ void stop_if_cancelled(const Page& page) {
 }
 
 std::string answer(Page& page, std::string_view request) {
-  page.cancel.store(0);
   try {
     return json_text(answered(page, request));
   } catch (const Cancelled&) {
     return R"({"cancelled":true})";
+  } catch (const Interrupted& interrupted) {
+    return json_text({{"unfinished", interrupted.samples}});
   } catch (const std::bad_alloc&) {
     return json_text(error_json(kNoMemory));
   } catch (const std::length_error&) {  // more than 32 bits can address

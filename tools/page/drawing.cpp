@@ -258,13 +258,19 @@ UsedLens used_lens(const Page& page, const Drawn& drawn, const FrameSettings& se
 }
 
 Image made_picture(const Page& page, const Drawn& drawn, const Shot& shot,
-                   const std::optional<UsedLens>& lens) {
+                   const std::optional<UsedLens>& lens, FrameMemory& memory,
+                   std::optional<double> slice_ms) {
   if (drawn.scene == nullptr && shot.show == Show::image && shot.method.filter == nullptr) {
     throw UsageError("this case is made as a picture: methods that draw the scene have none");
   }
-  FrameMemory memory{.is_last = true};
+  const auto start = std::chrono::steady_clock::now();
+  if (slice_ms && !memory.begun) memory.begun.emplace();
   FrameHooks hooks;
-  hooks.on_samples = [&page](int) { stop_if_cancelled(page); };
+  hooks.on_samples = [&](int samples) {
+    stop_if_cancelled(page);
+    const bool is_late = slice_ms && milliseconds_since(start) > *slice_ms;
+    if (is_late && samples < shot.sampling.samples) throw Interrupted{samples};
+  };
   Frame frame = make_picture(shot, drawn.frame, lens, memory, *page.pool, hooks);
   finish_picture(shot, frame, *page.pool);
   return std::move(frame.picture);

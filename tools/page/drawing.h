@@ -22,9 +22,11 @@ Shot shot_of_drawn(Page& page, const Drawn& drawn, const FrameSettings& settings
 UsedLens used_lens(const Page& page, const Drawn& drawn, const FrameSettings& settings,
                    const Shot& shot);
 
-/// The shot's picture, by any method, with the effects.
+/// The shot's picture, by any method, with the effects. With `slice_ms` it throws Interrupted if
+/// samples of the lens take longer, and goes on by the same `memory`.
 Image made_picture(const Page& page, const Drawn& drawn, const Shot& shot,
-                   const std::optional<UsedLens>& lens);
+                   const std::optional<UsedLens>& lens, FrameMemory& memory,
+                   std::optional<double> slice_ms = {});
 
 double milliseconds_since(std::chrono::steady_clock::time_point start);
 

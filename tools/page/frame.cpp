@@ -14,6 +14,8 @@
 namespace softfocus {
 namespace {
 
+constexpr double kMostSliceMs = 60000.0;
+
 /// The lens in the numbers of the thesis's equations; dof/lens.h has them.
 void add_lens_figures(Json& reply, const UsedLens& used, const Drawn& drawn, ThreadPool& pool) {
   const ThinLens& lens = used.lens;
@@ -36,7 +38,7 @@ void add_lens_figures(Json& reply, const UsedLens& used, const Drawn& drawn, Thr
   reply["max_coc_px"] = used.settings.max_coc_px;
 }
 
-ShownFrame scene_frame(Page& page, const FrameSettings& settings) {
+ShownFrame scene_frame(Page& page, const FrameSettings& settings, const Json& request) {
   ShownFrame shown{.drawn = drawn_picture(page, settings),
                    .settings = settings,
                    .lens = {},
@@ -47,9 +49,27 @@ ShownFrame scene_frame(Page& page, const FrameSettings& settings) {
   const Drawn& drawn = *shown.drawn;
   const Shot shot = shot_of_drawn(page, drawn, settings);
   if (shot.lens) shown.lens = used_lens(page, drawn, settings, shot);
+  std::optional<double> slice_ms;
+  if (const Json* ms = given(request, "slice_ms")) {
+    slice_ms = checked_number(*ms, "slice_ms", 0.0, kMostSliceMs);
+  }
+  const std::string text = json_text(request);
+  if (!page.begun || page.begun->request != text || page.begun->drawn != shown.drawn) {
+    page.begun = {.request = text, .drawn = shown.drawn, .memory = {.is_last = !slice_ms}};
+  }
+  BegunFrame& begun = *page.begun;
   const auto start = std::chrono::steady_clock::now();
-  shown.picture = made_picture(page, drawn, shot, shown.lens);
-  shown.filter_ms = milliseconds_since(start);
+  try {
+    shown.picture = made_picture(page, drawn, shot, shown.lens, begun.memory, slice_ms);
+  } catch (const Interrupted&) {
+    begun.ms += milliseconds_since(start);
+    throw;
+  } catch (...) {
+    page.begun.reset();
+    throw;
+  }
+  shown.filter_ms = begun.ms + milliseconds_since(start);
+  page.begun.reset();
   return shown;
 }
 
@@ -58,7 +78,8 @@ ShownFrame scene_frame(Page& page, const FrameSettings& settings) {
 Json answer_frame(Page& page, const Json& request) {
   const FrameSettings settings = read_frame_settings(request);
   const bool is_picture = page.opened && page.opened->picture;
-  ShownFrame shown = is_picture ? refocused_frame(page, settings) : scene_frame(page, settings);
+  ShownFrame shown =
+      is_picture ? refocused_frame(page, settings) : scene_frame(page, settings, request);
   const Drawn& drawn = *shown.drawn;
   if (settings.hash) shown.hash = hash_image(shown.picture);
   Json reply{{"width", shown.picture.width},

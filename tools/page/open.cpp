@@ -102,6 +102,7 @@ Json warnings_json(const Scene& scene) {
 
 void put_in_place(Page& page, std::unique_ptr<Opened> opened) {
   page.truth.reset();
+  page.begun.reset();
   page.shown.reset();
   page.memory = {};
   page.drawn = {};

@@ -94,6 +94,14 @@ struct Pixels {
   std::vector<std::uint8_t> rgba;
 };
 
+/// A frame that was interrupted to let messages in. The same request goes on with it.
+struct BegunFrame {
+  std::string request;
+  std::shared_ptr<const Drawn> drawn;
+  FrameMemory memory;
+  double ms = 0.0;  ///< so far
+};
+
 /// The GPU of the page's machine, and the opened scene on it (gpu.cpp).
 struct Gpu;
 struct GpuScene;
@@ -105,6 +113,7 @@ struct Page {
   /// The last pictures drawn, the latest first: one as shown, one coarser.
   std::array<std::shared_ptr<const Drawn>, 2> drawn;
   std::optional<ShownFrame> shown;
+  std::optional<BegunFrame> begun;
   std::optional<Truth> truth;
   GoldenSet golden_set = GoldenSet::all;  ///< of the self-test
   std::vector<GoldenPart> golden_parts;   ///< those to come, the next one last
@@ -113,12 +122,19 @@ struct Page {
   std::shared_ptr<GpuScene> gpu_scene;
   Pixels pixels;
   Bytes saved;  ///< the file that `save` made
-  /// Set from another thread: the request that runs ends soon. Each request clears it first.
+  /// Set from another thread: the request that runs, or is on its way here, ends soon. It is
+  /// cleared there before a request is sent.
   std::atomic<std::int32_t> cancel{0};
 };
 
 /// Thrown by a request that sees `cancel`.
 struct Cancelled {};
+
+/// Thrown by a `frame` with `slice_ms` that takes longer: the same request goes on.
+struct Interrupted {
+  int samples;
+};
+
 void stop_if_cancelled(const Page& page);
 
 /// Answers a request's text with the reply's. Never throws: what is wrong is {"error": ...}, and

@@ -168,7 +168,8 @@ Json answer_compare_methods(Page& page, const Json& request) {
           checked_number(radius, "radii", 0.0, static_cast<double>(kLargestMaxCoc)));
       const auto start = std::chrono::steady_clock::now();
       shot.method = {.filter = method};
-      const Image picture = made_picture(page, *shown.drawn, shot, lens);
+      FrameMemory memory{.is_last = true};
+      const Image picture = made_picture(page, *shown.drawn, shot, lens, memory);
       const double ms = milliseconds_since(start);
       results.push_back({{"method", method->name},
                          {"radius", lens.settings.max_coc_px},

@@ -98,6 +98,18 @@ const kTests = {
                                           "--samples", String(samples), "--until", "1e-9"]));
   },
 
+  "a frame that comes in slices has the bits of one that does not"({ ask }) {
+    ask({ do: "open", scene: "figures" });
+    for (const method of ["accumulation", "filtered-views"]) {
+      const settings = { do: "frame", size: [48, 32], method, samples: 40 };
+      const seen = [];
+      let reply = ask({ ...settings, slice_ms: 0 });
+      for (; reply.unfinished; reply = ask({ ...settings, slice_ms: 0 })) seen.push(reply.unfinished);
+      assert.deepStrictEqual(seen.slice(-2), [16, 32], method);
+      assert.strictEqual(reply.hash, ask(settings).hash, method);
+    }
+  },
+
   "a scene of one's own is read from below /own"({ module, ask }) {
     const text = fs.readFileSync(path.join(__dirname, "../../../scenes/figures.toml"));
     module.FS.writeFile("/own/mine.toml", text);

@@ -87,6 +87,38 @@ TEST_CASE("a frame is the same drawn anew, from the kept drawing and on more thr
   CHECK(hash_of(page, frame) == hash);
 }
 
+TEST_CASE("a frame of samples that comes in slices has the same bits, and ends in between") {
+  for (const char* method : {"accumulation", "filtered-views"}) {
+    CAPTURE(method);
+    const std::string settings =
+        R"("size":[48,32],"samples":40,"method":")" + std::string{method} + '"';
+    Page page;
+    open(page, "figures");
+    const std::string whole = hash_of(page, settings);
+    const std::string request = R"({"do":"frame","slice_ms":0,)" + settings + "}";
+    std::int64_t samples = 0;
+    for (Json reply = ask_well(page, request);; reply = ask_well(page, request)) {
+      const Json* unfinished = reply.find("unfinished");
+      if (unfinished == nullptr) {
+        CHECK(reply.at("hash").text() == whole);
+        break;
+      }
+      REQUIRE(unfinished->integer() > samples);
+      samples = unfinished->integer();
+    }
+    CHECK(samples >= 32);
+    // Another frame, or another scene, forgets what has begun.
+    ask_well(page, request);
+    CHECK(hash_of(page, settings) == whole);
+    ask_well(page, request);
+    open(page, "cube-room");
+    CHECK_FALSE(page.begun);
+    page.cancel = 1;
+    CHECK(ask(page, request).find("cancelled") != nullptr);
+    page.cancel = 0;
+  }
+}
+
 TEST_CASE("a lens alone does not draw anew") {
   Page page;
   open(page, "figures");

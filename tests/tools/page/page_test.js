@@ -29,7 +29,8 @@ const kParameters = {
   scale: { key: "scale" }, offset: { key: "offset" },
 };
 
-const kSensors = [{ name: "full-frame", width_mm: 36, height_mm: 24 }];
+const kSensors = [{ name: "full-frame", width_mm: 36, height_mm: 24 },
+                  { name: "half", width_mm: 18, height_mm: 12 }];
 
 test("a side begins with what the module has for presets", async () => {
   const { first_side, set_parameters } = await module_of("state.js");
@@ -44,7 +45,7 @@ test("a link gives the state back", async () => {
     ...first_state(), scene: "random:18446744073709551615", size: [1024, 512], time: 7,
     show: "error", editing: 1, divider: 0.25, object_m: 2.5,
     camera: { position_m: [1, -2.5, 3], target_m: [0, 0.125, 0], fov_y_degrees: 31.5 },
-    photo: { on: true, sensor: "aps-c", lock: true },
+    photo: { on: true, sensor: "aps-c", keep: "focal-length", lock: true, subject: true },
     sides: [{ ...first_side(), dof: false, focus: { m: 1.25 }, max_coc_px: 12, samples: 16 },
             { ...first_side(), method: "disc-layers", focus: { at: [0.25, 0.75] }, f_number: 5.6,
               shift_mm: -3 }],
@@ -90,6 +91,13 @@ test("a link carries a failure case", async () => {
   assert.deepStrictEqual(state_to_open(words).failure, failure);
 });
 
+test("a link names the visitor's own file", async () => {
+  const { first_state } = await module_of("state.js");
+  const { link_of, read_link } = await module_of("link.js");
+  const words = read_link(link_of({ ...first_state(), scene: "/own/my box/a.obj" }));
+  assert.deepStrictEqual([words.get("own"), words.has("scene")], ["my box/a.obj", false]);
+});
+
 test("what a link has wrong stays at its default", async () => {
   const { first_state } = await module_of("state.js");
   const { read_link, state_to_open, with_link } = await module_of("link.js");
@@ -124,6 +132,52 @@ test("a locked lens sees what its sensor takes in", async () => {
   assert.strictEqual(locked_fov_degrees({ ...state, photo: { ...state.photo, lock: false } }, lens), null);
   assert.strictEqual(locked_fov_degrees(state, { ...lens, focus_m: 0.01 }), null);
   assert.strictEqual(nearest_stop(2.05), 2);
+});
+
+test("another sensor keeps the framing or the focal length, and zooming the magnification", async () => {
+  const { adapted, zoomed_focus_m } = await module_of("lens/photographer.js");
+  const { backed, walked } = await module_of("camera.js");
+  const { field_of_view_degrees, film_height } = await module_of("lens/lens.js");
+  const lens = { focal_length_mm: 50, f_number: 2, focus_m: 2 };
+  const photo = { on: true, sensor: "full-frame", keep: "framing", lock: false, subject: false };
+  const state = { size: [512, 512], photo };
+  const behind = (patch) => adapted(state, { ...photo, ...patch }, lens, 40);
+  const film_mm = film_height(lens, 40);
+  const { focal_length_mm } = behind({ sensor: "half" });
+  near(film_height({ ...lens, focal_length_mm }, 40), film_mm / 2);
+  near(behind({ sensor: "half", keep: "focal-length" }).fov_y_degrees, field_of_view_degrees(lens, film_mm / 2));
+  const locked = behind({ lock: true });
+  near(film_height({ ...lens, ...locked }, 40), 24);
+  assert.deepStrictEqual(behind({ sensor: "half", on: false }), {});
+  assert.deepStrictEqual(behind({ keep: "focal-length" }), {});
+
+  const focus_m = zoomed_focus_m(lens, 100);
+  const part = (f, z) => f / (z * 1000 - f);
+  near(part(100, focus_m), part(50, 2));
+  const camera = { position_m: [0, 0, 4], target_m: [0, 0, 0], fov_y_degrees: 40 };
+  assert.deepStrictEqual(backed(camera, 2), { ...camera, position_m: [0, 0, 6] });
+  assert.deepStrictEqual(backed(camera, -5), walked(camera, 0, 0, 5));
+});
+
+test("a step that is taken back gives the value from before", async () => {
+  const { make_trail } = await module_of("numbers.js");
+  const step = make_trail();
+  const up = (x) => step(x, 1, () => Math.round(1.1 * x));
+  const down = (x) => step(x, -1, () => Math.round(x / 1.1));
+  assert.deepStrictEqual([up(14), up(15), up(17)], [15, 17, 19]);
+  assert.deepStrictEqual([down(19), down(17), down(15), down(14)], [17, 15, 14, 13]);
+  assert.strictEqual(down(99), 90);  // from a value that no step has led to
+});
+
+test("what `refocus` advises is told in the page's words", async () => {
+  const { advice_here } = await module_of("panels/picture.js");
+  assert.strictEqual(advice_here("a; give the depth as a second file, or say --depth-layer"),
+                     "a; give the depth as a second file");
+  assert.strictEqual(advice_here("'d' has no depth: x; give another file, or --depth-layer"),
+                     "'d' has no depth: x; give another file");
+  assert.strictEqual(advice_here("--holes far fills them"), "holes far fills them");
+  const command = "softfocus refocus IN.exr --method pinhole";
+  assert.strictEqual(advice_here(command), command);
 });
 
 test("the camera turns around its target and never over it", async () => {
@@ -219,13 +273,12 @@ class FakeWorker {
   answer(reply) { this.say({ id: this.sent[this.sent.length - 1].id, reply }); }
 }
 
-async function started_engine() {
+async function started_engine(cancel = new Int32Array(new SharedArrayBuffer(4))) {
   globalThis.Worker = FakeWorker;
   const { start_engine } = await module_of("engine.js");
   const failures = [];
   const engine = start_engine({ on_ready() {}, on_failed: (line) => failures.push(line),
                                 on_restarted() {} });
-  const cancel = new Int32Array(new SharedArrayBuffer(4));
   FakeWorker.last.say({ ready: true, cancel });
   return { engine, worker: FakeWorker.last, failures, cancel };
 }
@@ -248,6 +301,16 @@ test("only what runs in the background is cancelled for a frame", async () => {
   assert.strictEqual(cancel[0], 0);
   engine.cancel_running();
   assert.strictEqual(cancel[0], 1);
+});
+
+test("without shared memory the worker is told which request to end", async () => {
+  const { engine, worker } = await started_engine(null);
+  engine.ask({ do: "frame" }, 0);
+  const { id } = worker.sent[0];
+  engine.cancel_background();
+  assert.strictEqual(worker.sent.length, 1);
+  engine.cancel_running();
+  assert.deepStrictEqual(worker.sent[1], { cancel: id });
 });
 
 test("a worker that fails answers every request with its line", async () => {
@@ -275,6 +338,7 @@ test("of many changes only the newest is drawn", async () => {
     asked[asked.length - 1].done({ reply: { draw_ms: 1, filter_ms: 1 } });
     await new Promise(setImmediate);
   };
+  assert.deepStrictEqual(frames.timings(), []);
   frames.set_open(true);
   for (let time = 1; time <= 5; time++) {
     store.change({ time });
@@ -286,6 +350,25 @@ test("of many changes only the newest is drawn", async () => {
   assert.deepStrictEqual(shown, [1, 5]);
   assert.strictEqual(asked.length, 2);
   assert.ok(frames.settled());
+  assert.strictEqual(frames.timings().length, 2);
+  store.change_side({ f_number: 7 });
+  assert.deepStrictEqual(frames.timings(), []);  // they are of another setting
+});
+
+test("a frame that becomes late after a change gives way to the next", async () => {
+  const { first_state, make_store } = await module_of("state.js");
+  const { make_frames } = await module_of("frames.js");
+  let cancelled = 0;
+  const engine = { ask: () => new Promise(() => {}), cancel_background() {},
+                   cancel_running() { ++cancelled; } };
+  const frames = make_frames({ engine, store: make_store(first_state()), moving: () => false, paint() {},
+                               on_error() {}, on_settled() {}, on_frame() {} });
+  frames.set_open(true);
+  frames.want();
+  frames.want();
+  assert.strictEqual(cancelled, 0);
+  await new Promise((done) => setTimeout(done, 200));
+  assert.strictEqual(cancelled, 1);
 });
 
 async function main() {

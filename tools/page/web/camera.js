@@ -46,6 +46,15 @@ export function dollied(camera, factor) {
   return tidy({ ...camera, position_m: plus(camera.target_m, unit_of(arm), length) });
 }
 
+/** Back by so many metres, ahead if negative, looking the same way. The target stays as long as it is ahead. */
+export function backed(camera, metres) {
+  const arm = minus(camera.position_m, camera.target_m);
+  const length = length_of(arm);
+  const position_m = plus(camera.position_m, unit_of(arm), metres);
+  const target_m = length + metres > 0.01 * length ? camera.target_m : plus(camera.target_m, unit_of(arm), metres);
+  return tidy({ ...camera, position_m, target_m });
+}
+
 /** Eye and target together, in metres: to the right, upwards, ahead. */
 export function walked(camera, right, up, ahead) {
   const forward = unit_of(minus(camera.target_m, camera.position_m));

@@ -3,7 +3,8 @@
 import { by_id, element } from "./dom.js";
 import { make_number } from "./numbers.js";
 import { is_own_method } from "./link.js";
-import { kStops, locked_fov_degrees, nearest_stop } from "./lens/photographer.js";
+import { backed } from "./camera.js";
+import { adapted, kStops, locked_fov_degrees, nearest_stop, zoomed_focus_m } from "./lens/photographer.js";
 import { kShadows, kSizes, lens_keys, parameters, sensors } from "./state.js";
 
 function checked_of(name) {
@@ -50,22 +51,24 @@ export function make_controls({ store, camera, move, focus_m, max_coc, object_m,
     by_id("sensor").append(...sensors.map(({ name, width_mm, height_mm }) => (
         element("option", { value: name }, `${name}, ${width_mm} × ${height_mm} mm`))));
     add("focal-length", "focal_length_mm",
-        { label: "Focal length", key: "L", curve: "log", from: 8, to: 600 });
+        { label: "Focal length", key: "L", curve: "log", from: 8, to: 600, set: zoom });
     add("f-number", "f_number",
-        { label: "f-number", key: "N", curve: "log", from: 0.7, to: 64, digits: 2 });
+        { label: "f-number", key: "N", curve: "log", from: 0.7, to: 64, digits: 2,
+          spoken: (text) => `f/${text}` });
     add("focus", "focus_m", {
       label: "Focus distance", key: "F", curve: "log", from: 0.1, to: 100, get: focus_m,
       set: (value) => side({ focus: { m: value } }),
       shown_digits: () => (store.side().focus.at ? 4 : 5),
     });
     add("max-coc", "max_coc_px", { label: "Filter size", key: "X", curve: "root", from: 0, to: 128,
-                                   digits: 2, get: max_coc, shown_digits: () => 4 });
+                                   digits: 2, decimals: 1, get: max_coc, shown_digits: () => 4 });
     add("coc-scale", "coc_scale", { label: "Scale of the circles", unit: "×", key: "K",
-                                    curve: "root", from: 0, to: 10, digits: 2 });
+                                    curve: "root", from: 0, to: 10, digits: 2, decimals: 2,
+                                    spoken: (text) => `${text} times` });
     for (const key of lens_keys().filter((one) => !known.has(one))) add_plain(key);
     add("samples", "samples", {
       label: "Points of the lens", values: [1, 4, 16, 64, 256, 1024, 4096],
-      set: (value) => side({ samples: Math.round(value) }),
+      set: (value) => side({ samples: Math.round(value) }), spoken: (text) => `${text} points`,
     });
     add("fov", "fov_y_degrees", {
       label: "Field of view", from: 5, to: 120, get: () => camera()?.fov_y_degrees,
@@ -87,7 +90,9 @@ export function make_controls({ store, camera, move, focus_m, max_coc, object_m,
   on_change("compare", ({ checked }) => compare(checked));
   on_change("photo", ({ checked }) => photo({ on: checked }));
   on_change("sensor", ({ value }) => photo({ sensor: value }));
+  on_change("keep", ({ value }) => photo({ keep: value }));
   on_change("lock", ({ checked }) => photo({ lock: checked }));
+  on_change("subject", ({ checked }) => photo({ subject: checked }));
   on_change("stop", ({ value }) => side({ f_number: Number(value) }));
   on_change("size", () => store.change({ size: checked_of("size").split("x").map(Number) }));
   on_change("show", () => store.change({ show: checked_of("show") }));
@@ -121,10 +126,29 @@ export function make_controls({ store, camera, move, focus_m, max_coc, object_m,
     effect.value = now.effect ?? "";
   }
 
+  const within = (key, value) => Math.min(parameters[key].most, Math.max(parameters[key].least, value));
+
   function photo(patch) {
-    const next = { ...store.get().photo, ...patch };
+    const state = store.get();
+    const now = camera();
+    const next = { ...state.photo, ...patch };
+    const { focal_length_mm, fov_y_degrees } =
+        now ? adapted(state, next, { ...store.side(), focus_m: focus_m() }, now.fov_y_degrees) : {};
     store.change({ photo: next });
-    if (patch.on && next.on) side({ f_number: nearest_stop(store.side().f_number) });
+    if (patch.on) side({ f_number: nearest_stop(store.side().f_number) });
+    if (focal_length_mm) side({ focal_length_mm: within("focal_length_mm", focal_length_mm) });
+    if (fov_y_degrees) move({ ...now, fov_y_degrees: within("fov_y_degrees", fov_y_degrees) });
+  }
+
+  /** Another focal length; the camera moves if the subject's size is kept. */
+  function zoom(focal_length_mm) {
+    const { on, lock, subject } = store.get().photo;
+    const now = camera();
+    if (!(on && lock && subject && now)) return side({ focal_length_mm });
+    const lens = { ...store.side(), focus_m: focus_m() };
+    const metres = within("focus_m", zoomed_focus_m(lens, focal_length_mm));
+    side({ focal_length_mm, focus: { m: metres } });
+    return move(backed(now, metres - lens.focus_m));
   }
 
   /** B begins as a copy of A, so that one change shows alone. */
@@ -164,7 +188,10 @@ export function make_controls({ store, camera, move, focus_m, max_coc, object_m,
     by_id("photo-part").hidden = !state.photo.on;
     by_id("f-number-part").hidden = state.photo.on;
     by_id("sensor").value = state.photo.sensor;
+    by_id("keep").value = state.photo.keep;
     by_id("lock").checked = state.photo.lock;
+    by_id("subject").checked = state.photo.subject;
+    by_id("subject").disabled = !state.photo.lock;
     by_id("stop").value = String(nearest_stop(now.f_number));
     check("size", state.size.join("x"));
     check("show", state.show);

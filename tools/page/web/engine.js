@@ -1,7 +1,7 @@
 // The simulator in its worker: one request at a time, the more urgent first, so that a frame
 // overtakes work in the background.
 //
-// To the worker: {id, request, files}. `files` ([{path, bytes}]) are written below /own/ first.
+// To the worker: {id, request, files}, as worker.js has it; {cancel: id} where no memory is shared.
 // From the worker: {ready: true, build, missing, cancel} once (`cancel` is an Int32Array of one
 // number in shared memory, or absent), {failed: "one line"} if nothing can run, and then for each
 // request {id, reply, pixels, file}, `pixels` an ArrayBuffer of RGBA8 rows, `file` of a file's bytes,
@@ -37,6 +37,12 @@ export function start_engine({ on_ready, on_failed, on_restarted }) {
     if (cancel) Atomics.store(cancel, 0, 0);
     worker.postMessage({ id: running.id, request: running.request, files: running.files },
                        running.files.map((file) => file.bytes));
+  }
+
+  function cancel_running() {
+    if (!running) return;
+    if (cancel) Atomics.store(cancel, 0, 1);
+    else worker.postMessage({ cancel: running.id });
   }
 
   function fail(line) {
@@ -77,13 +83,11 @@ export function start_engine({ on_ready, on_failed, on_restarted }) {
         pump();
       });
     },
-    /** Stops the running request early, where memory is shared with it. */
-    cancel_running() {
-      if (running && cancel) Atomics.store(cancel, 0, 1);
-    },
+    /** Stops the running request early. */
+    cancel_running,
     /** Stops what runs in the background, so that a frame need not wait for it. */
     cancel_background() {
-      if (running?.urgency === kBackground && cancel) Atomics.store(cancel, 0, 1);
+      if (running?.urgency === kBackground) cancel_running();
     },
     /** While paused, nothing in the background begins. */
     pause(on) {

@@ -6,6 +6,7 @@ import { frame_request } from "./state.js";
 
 const kSmoothMs = 50;   // a frame this quick needs no coarse one before it
 const kSettleMs = 180;  // without input this long, the whole frame is drawn
+const kLateMs = 1000;   // a coarse frame that takes longer gives way to the next
 const kKept = 100;      // timings of one setting, for the report
 
 /** What the picture depends on, as text: equal keys, equal pictures. */
@@ -36,6 +37,7 @@ export function make_frames({ engine, store, moving, paint, on_frame, on_error, 
   let whole_ms = 0;     // what a whole frame is thought to take
   let drawn_ms = 0;     // of the last drawing
   let timer = 0;
+  let way_timer = 0;
   let timings = [];
   let timed = "";       // the setting that they are of
 
@@ -59,6 +61,16 @@ export function make_frames({ engine, store, moving, paint, on_frame, on_error, 
     }
   }
 
+  // Ends the running frame, once it is late, for the state has changed.
+  function give_way() {
+    clearTimeout(way_timer);
+    if (!running || !dirty) return;
+    const limit_ms = running.preview === 1 ? kSmoothMs : kLateMs;
+    const rest = running.began + limit_ms - performance.now();
+    if (rest <= 0) engine.cancel_running();
+    else way_timer = setTimeout(give_way, rest + 1);
+  }
+
   // The edited side comes last: the truth and the pixel are asked of the last frame.
   function sides_in_order(state) {
     const order = state.sides.map((_, index) => index);
@@ -77,6 +89,7 @@ export function make_frames({ engine, store, moving, paint, on_frame, on_error, 
       const request = frame_request(state, state.sides[index], preview, !moving());
       const { reply, pixels } = await engine.ask(request, kUrgent);
       if (reply.cancelled || !open) {
+        whole_ms = Math.max(whole_ms, (performance.now() - running.began) * preview * preview);
         last = null;
         break;
       }
@@ -99,7 +112,7 @@ export function make_frames({ engine, store, moving, paint, on_frame, on_error, 
       whole_ms = total_ms * (coarse ? preview * preview : 1);
       if (setting_key(state) !== timed) timings = [];
       timed = setting_key(state);
-      timings.push({ wall_ms, draw_ms: last.draw_ms, filter_ms: last.filter_ms, preview });
+      if (!coarse) timings.push({ wall_ms, draw_ms: last.draw_ms, filter_ms: last.filter_ms });
       if (timings.length > kKept) timings.shift();
       on_error("");
       on_frame(last, coarse, state, wall_ms);
@@ -117,25 +130,31 @@ export function make_frames({ engine, store, moving, paint, on_frame, on_error, 
       on_settled(false);
       if (by_hand) last_input = performance.now();
       engine.cancel_background();
-      const late = running && running.preview === 1 &&
-                   performance.now() - running.began > kSmoothMs;
-      if (late && by_hand) engine.cancel_running();
+      if (by_hand || !moving()) give_way();
       pump();
     },
     pause(on) {
       paused = on;
+      if (on && running) {
+        dirty = true;
+        engine.cancel_running();
+      }
       pump();
     },
-    /** While a scene is being opened no frame is asked for. */
+    /** While a scene is being opened no frame is asked for, and what runs ends early. */
     set_open(on) {
       open = on;
       whole_ms = 0;
-      if (!on) on_settled(false);
+      if (!on) {
+        engine.cancel_running();
+        on_settled(false);
+      }
       pump();
     },
     /** Whether the shown picture is whole and the state's. */
     settled,
     busy_for_ms: () => (running ? performance.now() - running.began : 0),
-    timings: () => timings.slice(),
+    /** Of whole frames of the state's setting. */
+    timings: () => (timed === setting_key(store.get()) ? timings.slice() : []),
   };
 }

@@ -68,12 +68,14 @@ export function take_shader(words, method) {
   }
 }
 
-/** The fragment, without the #. A scene from the visitor's own files is left out. */
+/** The fragment, without the #. Of the visitor's own files it has the name. */
 export function link_of(state) {
   const pairs = [];
   if (state.failure) {
     pairs.push(["case", state.failure.name], ["value", String(state.failure.value)]);
-  } else if (!state.scene.startsWith("/own/")) {
+  } else if (state.scene.startsWith("/own/")) {
+    pairs.push(["own", state.scene.slice("/own/".length)]);
+  } else {
     pairs.push(["scene", state.scene]);
   }
   pairs.push(["size", state.size.join("x")], ["frame", String(state.time)], ["show", state.show]);
@@ -93,7 +95,9 @@ export function link_of(state) {
   if (impostors) pairs.push(["impostors", impostors]);
   if (effect) pairs.push(["effect", effect]);
   if (state.photo.on) {
-    pairs.push(["sensor", state.photo.sensor], ["lock", state.photo.lock ? "1" : "0"]);
+    const { sensor, keep, lock, subject } = state.photo;
+    pairs.push(["sensor", sensor], ["keep", keep], ["lock", lock ? "1" : "0"]);
+    if (subject) pairs.push(["subject", "1"]);
   }
   if (state.object_m) pairs.push(["object", String(state.object_m)]);
   const is_shown = state.sides.some(({ method }) => is_own_method(method));
@@ -177,7 +181,9 @@ export function with_link(state, words) {
     effect: words.get("effect") ?? null,
   };
   if (words.has("sensor")) {
-    read.photo = { on: true, sensor: words.get("sensor"), lock: words.get("lock") === "1" };
+    read.photo = { on: true, sensor: words.get("sensor"), lock: words.get("lock") === "1",
+                   keep: words.get("keep") === "focal-length" ? "focal-length" : "framing",
+                   subject: words.get("subject") === "1" };
   }
   const object = Number(words.get("object"));
   if (object > 0) read.object_m = object;

@@ -15,19 +15,20 @@ import { lens_numbers, start_lens_view } from "./lens/lens_view.js";
 import { link_of, read_link, shader_of, state_to_open, take_shader, with_link } from "./link.js";
 import { make_methods_table } from "./panels/methods_table.js";
 import { start_own_files } from "./panels/own_files.js";
-import { kNoScene, make_picture, picture_request } from "./panels/picture.js";
+import { advice_here, kNoScene, make_picture, picture_request } from "./panels/picture.js";
 import { locked_fov_degrees } from "./lens/photographer.js";
 import { start_pointer } from "./pointer.js";
-import { save_report } from "./panels/report.js";
+import { save_report, shown_ms } from "./panels/report.js";
 import { start_shader } from "./panels/shader.js";
-import { first_state, make_store, parameters, set_parameters, with_picture, with_scene } from "./state.js";
+import { first_state, kMaps, make_store, parameters, set_parameters, with_picture, with_scene } from "./state.js";
 import { start_tabs } from "./tabs.js";
 import { start_theme } from "./theme.js";
 import { start_tips } from "./tips.js";
 import { make_truth } from "./panels/truth.js";
-import { metres_text, ms_text, three_digits } from "./units.js";
+import { limit_text, metres_text, ms_text, three_digits } from "./units.js";
 
 const kFrameMs = 1000 / 30;  // of the animation, at least
+const kMostSeed = 2n ** 64n - 1n;
 const kRestartMs = 20000;    // a module that stops twice in this time is not started a third time
 
 const store = make_store(first_state());
@@ -39,7 +40,11 @@ let build = "";
 let listing = { scenes: [], cases: [], methods: [], encodings: [], readings: [] };
 let playing = false;
 let quit = false;
-let read_own = async () => [];  // reads the visitor's files once more
+/** The visitor's scenes and pictures, by their path: {what, read}; `read` reads the files once more. */
+const own = new Map();
+let own_link = null;   // {path, words, wanted}: a link to a file that is not here
+let shown = null;      // the last state of which there was a frame
+let on_trial = null;   // what was opened and has had no frame yet: {what, words, before}
 
 const engine = start_engine({
   on_ready: start,
@@ -90,16 +95,38 @@ const frames = make_frames({
     view.paint(side, reply, pixels);
   },
   on_frame,
-  on_error: (line) => show_error(line, "frame"),
-  on_settled: (settled) => by_id("picture").setAttribute("aria-busy", String(!settled)),
-});
-const truth = make_truth({
-  engine,
-  settled: () => {
-    const { show } = store.get();
-    const measured = show === "truth" || show === "error";
-    return frames.settled() && (measured || (show === "image" && store.side().dof));
+  on_error: (line) => {
+    if (line && on_trial) go_back(advice_here(line));
+    else show_error(advice_here(line), "frame");
   },
+  on_settled: (settled) => {
+    by_id("picture").setAttribute("aria-busy", String(!settled));
+    if (settled) settling.splice(0).forEach((done) => done());
+  },
+});
+const settling = [];  // told when no frame is wanted any more
+
+/** The whole picture, filtered, which is what methods are measured by; false if there is none. */
+async function picture_shown() {
+  if (hindrance()) {
+    store.change({ show: "image" });
+    store.change_side({ dof: true });
+    await null;  // the store has told of it
+  }
+  if (!frames.settled()) await new Promise((done) => settling.push(done));
+  return frames.settled();
+}
+
+/** Why what is shown has no truth, or null. */
+function hindrance() {
+  const { show } = store.get();
+  if (kMaps.includes(show)) return "waits for the picture: choose Picture under it";
+  return show === "image" && !store.side().dof ? "waits for depth of field, which is off" : null;
+}
+
+const truth = make_truth({
+  engine, hindrance,
+  settled: () => frames.settled() && !hindrance(),
   shown: () => {
     const { show } = store.get();
     return show === "truth" || show === "error" ? show : null;
@@ -151,7 +178,7 @@ function keep_link() {
   clearTimeout(link_timer);
   link_timer = setTimeout(() => {
     try {
-      if (opened) history.replaceState(null, "", `#${link_of(store.get())}`);
+      if (opened && !own_link) history.replaceState(null, "", `#${link_of(store.get())}`);
     } catch {
       // Browsers allow a number of these a minute; the next change tries again.
     }
@@ -160,6 +187,7 @@ function keep_link() {
 
 store.listen((state, before) => {
   keep_locked_fov();
+  show_speed();
   controls.update();
   view.update(state);
   show_cross();
@@ -191,17 +219,21 @@ function keep_known({ focus_m: focus, max_coc_px: radius }, side) {
   if (!by_id("lens-panel").hidden) show_lens();
 }
 
-const recent_ms = [];
+/** Of whole frames of the present setting, as the report has it. */
+function show_speed() {
+  const ms = shown_ms(frames.timings());
+  const text = `${three_digits(1000 / ms)} fps · ${Number.isNaN(ms) ? "–" : ms_text(ms)} ms`;
+  by_id("speed").textContent = text;
+  if (!quit) document.title = `${text} · softfocus`;
+}
+
 function on_frame(reply, coarse, state, wall_ms) {
   last_reply = { ...last_reply, ...reply };
-  recent_ms.push(wall_ms);
-  if (recent_ms.length > 8) recent_ms.shift();
-  const mean_ms = recent_ms.reduce((sum, ms) => sum + ms, 0) / recent_ms.length;
-  const fps = three_digits(1000 / mean_ms);
-  by_id("speed").textContent = `${fps} fps · ${ms_text(mean_ms)} ms`;
+  shown = state;
+  on_trial = null;
+  show_speed();
   by_id("speed").title = `draw ${ms_text(reply.draw_ms)} ms, filter ${ms_text(reply.filter_ms)} ms` +
                          `${coarse ? ", coarse" : ""}`;
-  document.title = `${fps} fps · ${ms_text(mean_ms)} ms · softfocus`;
   if (reply.focus_m && !coarse) keep_known(reply, state.editing);
   show_hash(reply, state, state.sides[state.editing], listing);
   show_shadow_counts(reply);
@@ -242,22 +274,63 @@ async function reopen() {
     return;
   }
   await shader.again();
-  const { reply } = await engine.ask(open_request(store.get()), kAsked, await read_own());
+  const state = store.get();
+  const files = await files_of(own.get(state.scene)?.read);
+  const { reply } = await engine.ask(open_request(state), kAsked, files ?? []);
   if (reply.error) show_error(`${reply.error}; choose another scene`);
   frames.set_open(!reply.error);
   frames.want(false);
   truth.renew();
 }
 
+/** The files that `read` gives, none without one, or null, and a line that says what to do. */
+async function files_of(read) {
+  try {
+    return read ? await read() : [];
+  } catch (error) {
+    show_error(`${error.message}; drop the files once more, a folder as a whole`);
+    return null;
+  }
+}
+
+/** Back to what had a picture, for what is open has none. */
+async function go_back(line) {
+  const { what, words, before } = on_trial;
+  on_trial = null;
+  const { scene, failure } = what;
+  if (before) await open(before, { state: before, read: own.get(before.scene)?.read });
+  else if (words?.size) await open({ scene, failure }, { words: new Map() });
+  else if (scene !== "figures") await open({ scene: "figures" }, { words: new Map() });
+  show_error(before ? `${line}; what was open before is here again` : line);
+}
+
+let turn = Promise.resolve();
+let newest = 0;
+
 /**
  * Opens a scene or case; what is there stays if it cannot be. `words` are a link's, `read` reads
- * the visitor's files. Resolves to warnings, or to null.
+ * the visitor's files, `state` is all else that is wanted. Resolves to warnings, or to null. Of
+ * several that wait the newest alone is opened.
  */
-async function open(what, { words = null, read = null } = {}) {
+function open(what, options = {}) {
+  const mine = ++newest;
+  const run = () => (mine === newest ? open_now(what, options) : null);
+  turn = turn.then(run, run);
+  return turn;
+}
+
+async function open_now(what, { words = null, read = null, state = null }) {
+  on_trial = null;
+  const files = await files_of(read);
+  if (!files) {
+    show_scene_choice(store.get());
+    return null;
+  }
+  if (quit) set_quit(false);
   frames.set_open(false);
-  const { reply } = await engine.ask(open_request(what), kAsked, read ? await read() : []);
+  const { reply } = await engine.ask(open_request(what), kAsked, files);
   if (reply.error) {
-    show_error(reply.error);
+    show_error(advice_here(reply.error));
     frames.set_open(Boolean(opened));
     frames.want(false);
     controls.update();
@@ -266,11 +339,14 @@ async function open(what, { words = null, read = null } = {}) {
   }
   show_error("");
   opened = reply;
-  if (read) read_own = read;
+  own_link = null;
+  const again = read ?? own.get(what.scene)?.read;
+  if (again) own.set(what.scene, { what: { scene: what.scene, picture: what.picture ?? null }, read: again });
   last_reply = null;
   by_id("over").textContent = "Drawing…";
+  on_trial = state ? null : { what, words, before: shown };
   // Another severity of the same case, or another reading of the same depth, keeps the setting.
-  const before = words ? what : store.get();
+  const before = words ? { ...first_state(), ...what } : store.get();
   const same = what.failure ? before.failure?.name === what.failure.name
       : what.picture && before.picture && !read;
   let next = { ...before, scene: what.scene ?? null, failure: what.failure ?? null,
@@ -278,6 +354,7 @@ async function open(what, { words = null, read = null } = {}) {
   if (!same || words) next = with_scene(next, reply);
   if (next.picture) next = with_picture(next, reply.picture, listing.methods);
   if (words) next = with_link(next, words);
+  if (state) next = state;
   next.sides.forEach((_, index) => { known_focus_m[index] = reply.lens.focus_m; });
   for (const id of ["play", "step", "time"]) by_id(id).disabled = is_still();
   by_id("camera-home").disabled = Boolean(what.failure || what.picture);
@@ -289,31 +366,15 @@ async function open(what, { words = null, read = null } = {}) {
   announce(`${reply.title ?? "The scene"} is open.`);
   show_own_scene(next.scene);
   const warnings = reply.warnings ?? [];
-  if (reply.picture?.lacks) show_error(reply.picture.lacks);
-  if (warnings.length > 0) show_error(warnings.slice(0, 3).join(" · "));
+  if (reply.picture?.lacks) show_error(advice_here(reply.picture.lacks));
+  if (warnings.length > 0) show_error(advice_here(warnings.slice(0, 3).join(" · ")));
   return warnings;
 }
 
-let own_picture = null;  // the last that was opened
-async function open_picture(what, read = null) {
-  const warnings = await open(what, { read });
-  if (warnings) own_picture = what;
-  return warnings;
-}
-
-// While a case is opened at one severity, the slider moves on: only the newest is opened next.
-let opening = false;
-let open_next = null;
-async function open_newest(what) {
-  open_next = what;
-  if (opening) return;
-  opening = true;
-  while (open_next) {
-    const now = open_next;
-    open_next = null;
-    await open(now);
-  }
-  opening = false;
+/** Opens the visitor's files, by a link's words if it has named them. */
+function open_own(what, read) {
+  if (own_link?.path !== what.scene) return open(what, { read });
+  return open({ ...own_link.wanted, ...what }, { words: own_link.words, read });
 }
 
 function show_own_scene(scene) {
@@ -461,7 +522,10 @@ by_id("play").addEventListener("click", () => set_playing(!playing));
 by_id("step").addEventListener("click", () => step());
 by_id("time").addEventListener("change", (event) => {
   const time = event.target.valueAsNumber;
-  if (time >= 0) store.change({ time });
+  const { least, most } = parameters.time;
+  if (time >= least && time <= most) return store.change({ time });
+  event.target.value = String(store.get().time);
+  return show_error(`frame of the animation: give ${limit_text(least)} to ${limit_text(most)}`);
 });
 by_id("camera-home").addEventListener("click", () => store.change({ camera: null }));
 by_id("reset").addEventListener("click", reset);
@@ -472,14 +536,17 @@ by_id("help").addEventListener("click", () => tabs.choose("tab-keys"));
 by_id("error-close").addEventListener("click", () => show_error(""));
 by_id("truth-on").addEventListener("change", (event) => truth.want(event.target.checked));
 by_id("scene").addEventListener("change", ({ target }) => {
-  if (target.value === own_picture?.scene) {
-    open_picture(own_picture);
-    return;
-  }
-  open({ scene: target.value === "random" ? `random:${by_id("seed").value}` : target.value });
+  const { what, read } = own.get(target.value) ?? {};
+  if (what) open(what, { read });
+  else open({ scene: target.value === "random" ? `random:${by_id("seed").value}` : target.value });
 });
 by_id("seed").addEventListener("change", ({ target }) => {
-  if (target.checkValidity()) open({ scene: `random:${target.value}` });
+  if (/^[0-9]+$/.test(target.value) && BigInt(target.value) <= kMostSeed) {
+    open({ scene: `random:${target.value}` });
+    return;
+  }
+  target.value = store.get().scene?.split(":")[1] ?? "1";
+  show_error(`seed: give a whole number from 0 to ${kMostSeed}`);
 });
 by_id("seed-next").addEventListener("click", () => {
   const next = BigInt.asUintN(64, BigInt(by_id("seed").value || 0) + 1n);
@@ -497,8 +564,8 @@ start_theme();
 start_hashes({ engine });
 start_own_files({
   on_error: show_error,
-  open: (path, read) => open({ scene: `/own/${path}` }, { read }),
-  open_picture: (found, read) => open_picture({
+  open: (path, read) => open_own({ scene: `/own/${path}` }, read),
+  open_picture: (found, read) => open_own({
     scene: `/own/${found.picture}`,
     picture: { depth: found.depth && `/own/${found.depth}`, encoding: null, numbers: {}, choices: {} },
   }, read),
@@ -506,16 +573,25 @@ start_own_files({
 
 async function open_link(fragment) {
   const words = read_link(fragment);
-  const own = shader_of(words);
-  const method = own && await shader.restore(own);
+  const carried = shader_of(words);
+  const method = carried && await shader.restore(carried);
   take_shader(words, method);
-  const wanted = { ...state_to_open(words), shader: method ? { ...own, method } : null };
+  const path = words.has("own") ? `/own/${words.get("own")}` : null;
+  const { what, read } = own.get(path) ?? {};
+  const wanted = { ...state_to_open(words), shader: method ? { ...carried, method } : null, ...what };
   const seed = /^random:([0-9]{1,20})$/.exec(wanted.scene ?? "");
   if (seed) by_id("seed").value = seed[1];
-  const done = await open(wanted, { words });
-  if (done || opened) return;
-  const line = by_id("error-text").textContent;
-  await open({ scene: "figures" });
+  if (!path || what) {
+    const done = await open(wanted, { words, read });
+    if (done || opened) return;
+  }
+  let line = by_id("error-text").textContent;
+  if (!opened) await open({ scene: "figures" }, { words: new Map() });
+  if (path && !what) {
+    own_link = { path, words, wanted };
+    line = `the link is of your own file ${words.get("own")}, which is not here: drop it on the page again, ` +
+           "with what it needs, or choose it by Open…; then the link’s settings come back";
+  }
   show_error(line);
 }
 
@@ -541,17 +617,17 @@ async function start(ready) {
   by_id("scene").disabled = false;
   controls.set_methods(listing.methods);
   controls.set_effects(listing.effects ?? []);
-  cases = make_cases({ cases: listing.cases, open: (name, value) => open_newest({ failure: { name, value } }) });
+  cases = make_cases({ cases: listing.cases, open: (name, value) => open({ failure: { name, value } }) });
   picture = make_picture({
     engine, listing,
     change: (reading) => {
       const { scene, picture: now } = store.get();
-      return open_picture({ scene, picture: { ...now, ...reading } });
+      return open({ scene, picture: { ...now, ...reading } });
     },
     stem: () => store.get().scene.replace(/^.*\//, "").replace(/\.[^.]*$/, ""),
   });
   methods_table = make_methods_table({
-    engine, truth, settled: frames.settled,
+    engine, truth, picture_shown,
     methods: listing.methods.filter(({ kind }) => kind === "filter"),
     choose: (method, radius) => store.change_side({ method, max_coc_px: radius }),
   });

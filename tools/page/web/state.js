@@ -61,7 +61,9 @@ export function first_state() {
     sides: [first_side()],
     editing: 0,
     divider: 0.5,
-    photo: { on: false, sensor: "full-frame", lock: false },
+    /** `keep`: what another sensor leaves as it is, "framing" or "focal-length"; `lock`: the focal length
+     * sets the field of view; `subject`: zooming then moves the camera. */
+    photo: { on: false, sensor: "full-frame", keep: "framing", lock: false, subject: false },
     object_m: null,  // the object of the lens diagram; null: 1.5 times the focus distance
   };
 }

@@ -34,6 +34,13 @@ export function ms_text(ms) {
          ms < 10 ? ms.toFixed(1) : Math.round(ms).toString();
 }
 
+/** The end of a range, exactly: 1e9 rather than its zeros. */
+export function limit_text(value) {
+  const size = Math.abs(value);
+  const is_long = size !== 0 && (size < 1e-3 || size >= 1e6);
+  return (is_long ? value.toExponential() : String(value)).replace("e+", "e");
+}
+
 /** A number of few digits, so that a command line and a link can repeat it exactly. */
 export function rounded(value, digits = 3) {
   return Number(value.toPrecision(digits));

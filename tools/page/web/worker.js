@@ -1,7 +1,11 @@
 // The simulator's worker: loads the build of the module that this browser can run, and answers
 // requests one after the other.
 //
-// To the worker: {id, request, files}. `files` ([{path, bytes}]) are written below /own/ first.
+// To the worker: {id, request, files}. With `files` ([{path, bytes}]) comes an `open`: they take the
+// place of all that is below /own/, and if it fails the old ones are there again. A scene from elsewhere
+// empties /own/.
+// {cancel: id} ends that request early where no memory is shared: a frame that samples the lens lets
+// messages in, slice by slice.
 // From the worker: {ready: true, build, missing, cancel} once (`cancel` is an Int32Array of one
 // number in memory shared with the module, or null), or {failed: "one line"} if nothing can run.
 // Then {id, reply, pixels, file} for each request; `pixels` is an ArrayBuffer of RGBA8 rows, `file`
@@ -17,6 +21,7 @@
 "use strict";
 
 const kMostThreads = 16;
+const kSliceMs = 100;
 
 // Modules of a few bytes, each with one instruction of what it asks for. What their bytes say:
 // a function that drops a v128.const; one that does an atomic load on a shared memory; one with
@@ -158,14 +163,53 @@ function cancel_of(module) {
 }
 
 /** Writes a file below /own/, with its folders. A path cannot lead out of there. */
-function write_file(module, { path, bytes }) {
+function write_file({ FS }, { path, bytes }) {
   const names = path.split(/[\\/]+/).filter((name) => name && name !== "." && name !== "..");
   let folder = "/own";
   for (const name of names.slice(0, -1)) {
     folder += `/${name}`;
-    if (!module.FS.analyzePath(folder).exists) module.FS.mkdir(folder);
+    if (!FS.analyzePath(folder).exists) FS.mkdir(folder);
   }
-  module.FS.writeFile(`${folder}/${names[names.length - 1]}`, new Uint8Array(bytes));
+  FS.writeFile(`${folder}/${names[names.length - 1]}`, new Uint8Array(bytes), { canOwn: true });
+}
+
+function remove_folder({ FS }, folder) {
+  for (const name of FS.readdir(folder).filter((one) => one !== "." && one !== "..")) {
+    const path = `${folder}/${name}`;
+    if (FS.isDir(FS.stat(path).mode)) remove_folder({ FS }, path);
+    else FS.unlink(path);
+  }
+  FS.rmdir(folder);
+}
+
+/** Opens what is in the files, which are then all that is below /own/, unless it fails. */
+function open_with_files(module, request, files) {
+  const { FS } = module;
+  FS.rename("/own", "/own-before");
+  FS.mkdir("/own");
+  let reply;
+  try {
+    for (const file of files) write_file(module, file);
+  } catch (error) {
+    reply = { error: `the files cannot be kept: ${error.message ?? error}` };
+  }
+  reply ??= ask(module, request);
+  if (reply.error) {
+    remove_folder(module, "/own");
+    FS.rename("/own-before", "/own");
+  } else {
+    remove_folder(module, "/own-before");
+  }
+  return reply;
+}
+
+function open_without_files(module, request) {
+  const reply = ask(module, request);
+  if (!reply.error && !(request.picture ?? request.scene ?? "").startsWith("/own/")) {
+    remove_folder(module, "/own");
+    module.FS.mkdir("/own");
+  }
+  return reply;
 }
 
 async function run() {
@@ -174,13 +218,31 @@ async function run() {
   const bytes = await wasm_of(build);
   let module = await make_module(build, bytes);
   let queue = Promise.resolve();
+  let cancelled = 0;  // the id of a request
+
+  /** A reply that takes long comes in slices; messages are read between them. */
+  async function ask_in_slices(id, request) {
+    for (;;) {
+      const reply = ask(module, { ...request, slice_ms: kSliceMs });
+      if (reply.unfinished === undefined) return reply;
+      await new Promise((done) => setTimeout(done, 0));
+      if (cancelled === id) return { cancelled: true };
+    }
+  }
+
+  async function reply_to(id, request, files) {
+    if (request.do === "open") {
+      return files?.length ? open_with_files(module, request, files) : open_without_files(module, request);
+    }
+    if (request.do === "frame" && !cancel_of(module)) return ask_in_slices(id, request);
+    const asked = request.do === "shader" ? await with_compiled(request) : request;
+    return asked.error ? asked : ask(module, asked);
+  }
 
   async function answer({ id, request, files }) {
     let reply, pixels, file;
     try {
-      for (const own of files ?? []) write_file(module, own);
-      const asked = request.do === "shader" ? await with_compiled(request) : request;
-      reply = asked.error ? asked : ask(module, asked);
+      reply = await reply_to(id, request, files);
       pixels = pixels_of(module, reply);
       file = file_of(module, reply);
     } catch (error) {
@@ -193,7 +255,10 @@ async function run() {
     self.postMessage({ id, reply, pixels, file }, [pixels, file].filter(Boolean));
   }
 
-  self.onmessage = ({ data }) => { queue = queue.then(() => answer(data)); };
+  self.onmessage = ({ data }) => {
+    if (data.cancel) cancelled = data.cancel;
+    else queue = queue.then(() => answer(data));
+  };
   self.postMessage({ ready: true, build, missing, cancel: cancel_of(module) });
 }
 

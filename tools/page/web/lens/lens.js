@@ -45,6 +45,12 @@ export function field_of_view_degrees(lens, film_height_mm) {
   return Math.atan(film_height_mm / (2 * image_distance(lens, lens.focus_m))) * 360 / Math.PI;
 }
 
+/** The focal length whose lens, focused at focus_m, has that field of view on a film of that height. */
+export function focal_length_for(film_height_mm, fov_y_degrees, focus_m) {
+  const image_mm = film_height_mm / (2 * Math.tan(fov_y_degrees * Math.PI / 360));
+  return image_mm * focus_m * 1000 / (image_mm + focus_m * 1000);
+}
+
 /** Signed radius in pixels, negative before the focus. */
 export function radius_px(lens, distance_m, fov_y_degrees, height_px, coc_scale) {
   const per_tangent = height_px / (2 * Math.tan(fov_y_degrees * Math.PI / 360));

@@ -4,6 +4,7 @@
 
 import { by_id, svg_element } from "../dom.js";
 import { aperture_of, film_height, image_distance } from "./lens.js";
+import { make_trail } from "../numbers.js";
 import { metres_text, millimetres_text, three_digits } from "../units.js";
 
 const kHeight = 150;  // of each drawing, in CSS pixels
@@ -205,6 +206,7 @@ export function make_lens_diagram({ on_object, on_focus }) {
   }
 
   function make_handle(handle, set, get) {
+    const trail = make_trail();
     handle.addEventListener("pointerdown", (event) => {
       held = set;
       world.setPointerCapture(event.pointerId);
@@ -212,13 +214,12 @@ export function make_lens_diagram({ on_object, on_focus }) {
       event.preventDefault();
     });
     handle.addEventListener("keydown", (event) => {
-      const factor = { ArrowLeft: 1.05, ArrowUp: 1.05, ArrowRight: 1 / 1.05, ArrowDown: 1 / 1.05,
-                       PageUp: 1.5, PageDown: 1 / 1.5 }[event.key];
-      if (!factor) return;
+      const steps = { ArrowLeft: 1, ArrowUp: 1, ArrowRight: -1, ArrowDown: -1, PageUp: 8, PageDown: -8 }[event.key];
+      if (!steps) return;
       event.preventDefault();
       event.stopPropagation();
-      set(Number(Math.max(get() * factor, numbers.lens.focal_length_mm / 1000 * 1.05)
-          .toPrecision(3)));
+      const least = numbers.lens.focal_length_mm / 1000 * 1.05;
+      set(trail(get(), steps, () => Number(Math.max(get() * 1.05 ** steps, least).toPrecision(3))));
     });
   }
   make_handle(object, on_object, () => numbers.object_m);

@@ -1,7 +1,7 @@
 // Photographer's mode: a sensor, stops in thirds, and the field of view that follows from them.
 
 import { sensors } from "../state.js";
-import { field_of_view_degrees, usable_lens } from "./lens.js";
+import { field_of_view_degrees, film_height, focal_length_for, usable_lens } from "./lens.js";
 
 /** Stops in thirds as lenses are marked. */
 export const kStops = [
@@ -25,4 +25,29 @@ export function locked_fov_degrees(state, lens) {
   if (!state.photo.on || !state.photo.lock || !usable_lens(lens)) return null;
   const degrees = field_of_view_degrees(lens, used_film_height_mm(state.photo.sensor, state.size));
   return Number(degrees.toPrecision(6));
+}
+
+/**
+ * What gives way when `photo` becomes `next`, so that the rest is kept: {focal_length_mm} with the
+ * framing, {fov_y_degrees} with the focal length, or {}. `lens` has its focus. Where the focal length
+ * does not set the field of view, a film twice as high is twice the film that was used.
+ */
+export function adapted(state, next, lens, fov_y_degrees) {
+  const { photo, size } = state;
+  const locks = next.on && next.lock && !(photo.on && photo.lock);
+  if (!next.on || !usable_lens(lens) || (next.sensor === photo.sensor && !locks)) return {};
+  const used_mm = film_height(lens, fov_y_degrees);
+  const film_mm = used_film_height_mm(next.sensor, size) *
+                  (next.lock ? 1 : used_mm / used_film_height_mm(photo.sensor, size));
+  return next.keep === "framing"
+      ? { focal_length_mm: Number(focal_length_for(film_mm, fov_y_degrees, lens.focus_m).toPrecision(6)) }
+      : { fov_y_degrees: Number(field_of_view_degrees(lens, film_mm).toPrecision(6)) };
+}
+
+/**
+ * The focus distance at which another focal length shows what is in focus as large on the same film:
+ * f / (z - f) stays, so z goes with f.
+ */
+export function zoomed_focus_m(lens, focal_length_mm) {
+  return Number((lens.focus_m * focal_length_mm / lens.focal_length_mm).toPrecision(6));
 }

@@ -8,6 +8,13 @@ export function start_compare_view(store) {
   const marks = [by_id("mark-a"), by_id("mark-b")];
 
   divider.addEventListener("input", () => store.change({ divider: divider.valueAsNumber / 100 }));
+  divider.addEventListener("keydown", (event) => {
+    const percent = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 }[event.key];
+    if (!percent) return;
+    event.preventDefault();
+    divider.value = divider.valueAsNumber + percent;
+    store.change({ divider: divider.valueAsNumber / 100 });
+  });
 
   return {
     paint(side, { width, height }, pixels) {
@@ -31,6 +38,7 @@ export function start_compare_view(store) {
       divider.hidden = !split;
       marks.forEach((mark) => { mark.hidden = !split; });
       if (document.activeElement !== divider) divider.value = 100 * state.divider;
+      divider.setAttribute("aria-valuetext", `${Math.round(100 * state.divider)} % from the left`);
     },
   };
 }

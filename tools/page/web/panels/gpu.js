@@ -51,14 +51,14 @@ export function start_gpu({ engine, store, settled }) {
 
   function show_numbers(reply) {
     const { draw, filter, frame } = reply.differing;
-    const head = ["", "Module, ms", "Your GPU, ms"].map((word) => element("th", { scope: "col" }, word));
+    const head = ["Stage", "Module, ms", "Your GPU, ms"].map((word) => element("th", { scope: "col" }, word));
     const row = (name, module_ms, gpu_ms) => element(
         "tr", {}, element("th", { scope: "row" }, name), element("td", {}, ms_text(module_ms)),
         element("td", {}, ms_text(gpu_ms)));
     const body = element("tbody");
     if (draw) body.append(row("Draw", reply.emulated_draw_ms, reply.draw_ms));
     if (filter) body.append(row("Filter", reply.emulated_filter_ms, reply.filter_ms));
-    by_id("gpu-table").hidden = false;
+    by_id("gpu-table").parentElement.hidden = false;
     by_id("gpu-table").replaceChildren(element("thead", {}, element("tr", {}, ...head)), body);
     by_id("gpu-differences").replaceChildren(
         element("li", {}, `Profile ${reply.profile}`),
@@ -115,7 +115,7 @@ export function start_gpu({ engine, store, settled }) {
       state.textContent = list.error;
       return;
     }
-    by_id("gpu-cases").hidden = false;
+    by_id("gpu-cases").parentElement.hidden = false;
     by_id("gpu-cases").replaceChildren(element("thead", {}, element("tr", {}, ...head)), body);
     by_id("gpu-crosscheck").textContent = "Stop";
     let done = 0;

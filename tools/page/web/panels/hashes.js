@@ -91,7 +91,7 @@ export function start_hashes({ engine }) {
     running = true;
     button.textContent = "Stop";
     progress.hidden = false;
-    table.hidden = true;
+    table.parentElement.hidden = true;
     const body = element("tbody");
     const head = ["Hash of", "here", "wanted"].map((word) => element("th", { scope: "col" }, word));
     table.replaceChildren(element("thead", {}, element("tr", {}, ...head)), body);
@@ -111,7 +111,7 @@ export function start_hashes({ engine }) {
       for (const result of reply.results) {
         if (result.equal) continue;
         differing++;
-        table.hidden = false;
+        table.parentElement.hidden = false;
         body.append(row_of(result));
       }
       progress.value = first / total;

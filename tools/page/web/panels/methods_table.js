@@ -11,8 +11,11 @@ export function read_radii(text) {
   return [...new Set(radii)].sort((a, b) => a - b).slice(0, 6);
 }
 
-/** `choose(method, radius)` is called for a pressed cell. */
-export function make_methods_table({ engine, methods, truth, choose, settled }) {
+/**
+ * `choose(method, radius)` is called for a pressed cell. `picture_shown()` shows the picture, if need be,
+ * and resolves to whether it is there.
+ */
+export function make_methods_table({ engine, methods, truth, choose, picture_shown }) {
   const table = by_id("methods-table");
   const button = by_id("measure");
   const state = by_id("measure-state");
@@ -25,11 +28,11 @@ export function make_methods_table({ engine, methods, truth, choose, settled }) 
     if (!result) return [element("td", {}, "–"), element("td", {}, "–")];
     if (result.error) return [element("td", { colspan: 2, title: result.error }, "not here")];
     const best = Math.min(...[...results.values()].map((x) => x.flip_mean ?? Infinity));
+    const flip = result.flip_mean.toFixed(3);
     const press = element("button", { type: "button", class: "cell",
-                                      "aria-label": `Use ${name} with radius ${radius}` },
-                          result.flip_mean.toFixed(3));
+                                      "aria-label": `${flip}: use ${name} with radius ${radius}` }, flip);
     press.addEventListener("click", () => choose(name, radius));
-    const error = element("td", result.flip_mean <= best ? { class: "best" } : {}, press);
+    const error = element("td", { class: result.flip_mean <= best ? "measured best" : "measured" }, press);
     error.style.setProperty("--part", `${Math.min(100, 300 * result.flip_mean)}%`);
     return [element("td", {}, ms_text(result.ms)), error];
   }
@@ -62,12 +65,16 @@ export function make_methods_table({ engine, methods, truth, choose, settled }) 
     radii = read_radii(by_id("radii").value);
     if (radii.length === 0) return stop(`give radii above 0, up to ${parameters.max_coc_px.most}, such as 8 16 32`);
     by_id("radii").value = radii.join(" ");
+    state.textContent = "waiting for the whole picture…";
+    if (!await picture_shown()) return stop("there is no picture to measure");
+    if (mine !== run) return undefined;
     results.clear();
     draw();
     button.textContent = "Stop";
     state.textContent = "collecting the truth…";
     truth.want(true);
     await truth.when_done();
+    if (mine !== run) return undefined;
     const total = methods.length * radii.length;
     for (const { name } of methods) {
       for (const radius of radii) {
@@ -89,8 +96,7 @@ export function make_methods_table({ engine, methods, truth, choose, settled }) 
 
   button.addEventListener("click", () => {
     if (button.textContent === "Stop") stop("stopped");
-    else if (settled()) measure();
-    else state.textContent = "wait for the whole picture";
+    else measure();
   });
   radii = read_radii(by_id("radii").value);
   draw();

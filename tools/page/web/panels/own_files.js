@@ -65,7 +65,10 @@ export function start_own_files({ open, open_picture, on_error }) {
 
   async function take(chosen) {
     on_error("");
-    if (chosen.length === 0) return;
+    if (chosen.length === 0) {
+      on_error("there is no file in this: drop a scene, a model, or a picture and its depth");
+      return;
+    }
     const paths = chosen.map(({ path }) => path);
     const scene = scene_among(paths);
     const found = scene ? null : picture_among(paths);
@@ -80,17 +83,17 @@ export function start_own_files({ open, open_picture, on_error }) {
       on_error(`${Math.round(total / 1e6)} MB are too much: give at most 512 MB`);
       return;
     }
-    const read = () => Promise.all(
-        chosen.map(async ({ path, file }) => ({ path, bytes: await file.arrayBuffer() })));
-    try {
-      const warnings = await (scene ? open(scene, read) : open_picture(found, read));
-      if (!warnings) return;
-      messages.replaceChildren(
-          element("li", {}, `${first} is open.`),
-          ...warnings.map((warning) => element("li", { class: "warning" }, warning)));
-    } catch (error) {
-      on_error(`${first} cannot be read: ${error.message}`);
-    }
+    const read = () => Promise.all(chosen.map(async ({ path, file }) => {
+      const bytes = await file.arrayBuffer().catch(({ message }) => {
+        throw new Error(`${path} cannot be read: ${message}`);
+      });
+      return { path, bytes };
+    }));
+    const warnings = await (scene ? open(scene, read) : open_picture(found, read));
+    if (!warnings) return;
+    messages.replaceChildren(
+        element("li", {}, `${first} is open.`),
+        ...warnings.map((warning) => element("li", { class: "warning" }, warning)));
   }
 
   by_id("files").addEventListener("change", (event) => {

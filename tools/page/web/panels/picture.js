@@ -6,6 +6,16 @@ import { parameters } from "../state.js";
 
 export const kNoScene = "a picture has no scene to draw: choose a scene for this";
 
+/** A line of `refocus` in the page's words: it advises options, and here are controls and files. */
+export function advice_here(line) {
+  if (line.includes("softfocus ")) return line;  // a command to type
+  return line.replace(/,? or (say )?--depth-layer/, "")
+      .replace("a --depth-layer of", "a file that has one of these alone:")
+      .replace("give a --depth-encoding", "choose under Depth map what its numbers are")
+      .replace("another --depth-encoding would do", "choose under Depth map what its numbers are")
+      .replace(/--(?=[a-z])/g, "");
+}
+
 const words_of = ({ needs, takes }) => `${needs} ${takes}`.split(" ").filter(Boolean);
 
 /** The encoding that is none: radii of circles, which need no lens. */

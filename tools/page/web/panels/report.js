@@ -10,18 +10,20 @@ function statistics(values) {
   return { median: at(0.5), least: sorted[0], most: sorted[sorted.length - 1] };
 }
 
+/** Milliseconds until a whole frame is shown: the report's and the header's. NaN: none was. */
+export const shown_ms = (timings) => (
+    timings.length === 0 ? NaN : statistics(timings.map(({ wall_ms }) => wall_ms)).median);
+
 function timing_lines(timings) {
-  const whole = timings.filter((timing) => timing.preview === 1);
-  if (whole.length === 0) return ["no whole frame was drawn yet"];
+  if (timings.length === 0) return ["no whole frame was drawn yet"];
   const lines = ["Milliseconds           median    least     most"];
   const rows = { Drawing: (t) => t.draw_ms, Filtering: (t) => t.filter_ms,
                  "Until it is shown": (t) => t.wall_ms };
   for (const [name, of] of Object.entries(rows)) {
-    const { median, least, most } = statistics(whole.map(of));
+    const { median, least, most } = statistics(timings.map(of));
     lines.push(name.padEnd(20) + [median, least, most].map((x) => ms_text(x).padStart(9)).join(""));
   }
-  const shown = statistics(whole.map((t) => t.wall_ms)).median;
-  lines.push("", `Frames per second   ${(1000 / shown).toFixed(1)} (${whole.length} whole frames)`);
+  lines.push("", `Frames per second   ${(1000 / shown_ms(timings)).toFixed(1)} (${timings.length} whole frames)`);
   return lines;
 }
 

@@ -10,9 +10,10 @@ const kShownEvery = 16;  // views between two pictures of the growing truth
 
 /**
  * `paint(reply, pixels)` shows the truth or the error; `shown()` is "truth", "error" or null.
- * `settled()`: whether the whole picture of the present state is there.
+ * `settled()`: whether the whole picture of the present state is there; `hindrance()`: why what is
+ * shown has no truth, or null.
  */
-export function make_truth({ engine, settled, shown, paint, on_error }) {
+export function make_truth({ engine, settled, hindrance, shown, paint, on_error }) {
   let wanted = false;
   let running = false;
   let paused = false;
@@ -29,7 +30,7 @@ export function make_truth({ engine, settled, shown, paint, on_error }) {
     const progress = by_id("truth-progress");
     if (!last) {
       progress.value = 0;
-      say(wanted ? "waiting for the whole picture" : "not begun");
+      say(wanted ? hindrance() ?? "waiting for the whole picture" : "not begun");
       return;
     }
     const flip = last.flip_mean === undefined || last.flip_mean === null
