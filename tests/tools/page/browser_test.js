@@ -560,6 +560,11 @@ async function prepend_to_worker(context, script) {
   });
 }
 
+require("./lessons_walk.js")({
+  test, drawn, set_number, text_of,
+  has_compiler: fs.existsSync(path.join(folder, "softfocus-compiler.wasm")),
+});
+
 function serve() {
   const server = spawn("node", [path.join(__dirname, "../../../tools/page/serve.js"), folder, "0"]);
   return new Promise((done, fail) => {
