@@ -300,10 +300,10 @@ function make_claims({ ask, frame, lens, half }) {
               `a step of ${half.half_step(missing)}`, "largest is 65504; 65520 and more", "70,000"];
     },
     4.4: () => {
-      const numbers = [2049, 2050, 2051, 2052, 0.1, 1 / 3, 70000];
+      const numbers = [2049, 2050, 2051, 2052, 0.1, 1 / 3, 70000, 3 * 2 ** -25, 2 ** -25, 1e-5];
       const [nearest, cut] = ["ieee", "llvmpipe"].map((profile) => stored_by(profile, numbers));
-      assert.deepStrictEqual(numbers.map(half.nearest_half), nearest);
-      assert.deepStrictEqual(numbers.map((number) => half.cut_half(Math.fround(number))), cut);
+      const stored = (by) => numbers.map((number) => by(Math.fround(number)));
+      assert.deepStrictEqual([stored(half.nearest_half), stored(half.cut_half)], [nearest, cut]);
       return [`near to 2049`, `last bit is 0: ${nearest[0]}`, "number above 2048",
               `2051: to the nearest, of 2050 and 2052 equally near, it becomes ${nearest[2]}; cut it becomes ${cut[2]}`];
     },

@@ -109,6 +109,7 @@ module.exports = ({ test, drawn, set_number, has_compiler, ...of }) => {
     const keys = Object.keys(kDeeds).filter((key) => key.startsWith(`${number}.`));
     for (const key of keys) {
       assert.ok((await of.text_of(page, "step-title")).startsWith(key), key);
+      assert.doesNotMatch(await of.text_of(page, "step-text"), /\*\*|\]\(|<\/?details|`/, `${key}: Markdown`);
       if (kDeeds[key]) assert.strictEqual(await of.text_of(page, "step-state"), "Not found yet.", key);
       if (await page.locator("#step-set").isVisible()) {
         await page.locator("#step-set").click();
@@ -121,7 +122,6 @@ module.exports = ({ test, drawn, set_number, has_compiler, ...of }) => {
         await kDeeds[key](page);
       }
       await state_is(page, "✓ Found.").catch(() => { throw new Error(`${key} is never found`); });
-      await of.after_step?.(page, key);
       if (await page.locator("#strip-back").isVisible()) await page.locator("#strip-back").click();
       if (key !== "5.5") await page.locator("#step-next").click();
     }
@@ -144,7 +144,8 @@ module.exports = ({ test, drawn, set_number, has_compiler, ...of }) => {
     await other.close();
     await tab(page, "lessons");
     await page.locator("#lesson").selectOption("4.1");
-    assert.match(await page.locator("#lesson option:checked").textContent(), /\(1 of 6\)/);
+    await state_is(page, "✓ Found.");
+    assert.match(await page.locator("#lesson option:checked").textContent(), /\(2 of 6\)/);
     await page.locator("#step-list button").nth(2).click();
     assert.strictEqual(await of.text_of(page, "step-state"), "✓ Found.");
     await page.locator("#lessons-anew").click();

@@ -19,6 +19,12 @@ function stored() {
   }
 }
 
+/** Whether an element is on the screen, and nothing over it. */
+function is_in_sight(node) {
+  const { left, top, bottom } = node.getBoundingClientRect();
+  return node.contains(document.elementFromPoint(left + 4, (top + bottom) / 2));
+}
+
 async function lessons_text() {
   const part = document.getElementById("softfocus-lessons");
   if (part) return part.textContent;
@@ -87,7 +93,8 @@ export function start_lessons({ world, set_up, want_truth, tabs }) {
     const rule = kSteps[key] ?? {};
     const chapter = lesson_of(key) ?? chapters.find(({ title }) => title === key);
     const is_first = !step || chapter.steps[0] === step;
-    by_id("lesson-text").replaceChildren(...(is_first ? blocks_of(chapter.lines) : []));
+    by_id("lesson-text").replaceChildren(...(step ? [] : [element("h2", {}, chapter.title)]),
+                                         ...(is_first ? blocks_of(chapter.lines) : []));
     by_id("lesson-step").hidden = !step;
     by_id("strip-title").textContent = step ? `${key} ${step.title}` : "";
     if (step) {
@@ -122,7 +129,7 @@ export function start_lessons({ world, set_up, want_truth, tabs }) {
   }
 
   function look() {
-    by_id("lesson-strip").hidden = !begun || !step_of(at) || !by_id("lessons-panel").hidden;
+    by_id("lesson-strip").hidden = !begun || !step_of(at) || is_in_sight(by_id("step-title"));
     const rule = kSteps[at];
     if (!begun || !rule) return;
     const now = { ...world(), half: half.numbers() };

@@ -37,14 +37,18 @@ const kRound = ["one-pass", "importance-ordered", "scatter", "scatter-sorted", "
 const kLens = "scene=figures&f=50&N=2&focus=2";
 const kFence = "scene=near-fence&method=accumulation";
 
-/** The scene's FLIPs that this page has seen of one shader, for the step that asks for two. */
+// Step 5.4: the scenes on which this page has seen a shader, by its method's name, below.
+const kMostOfBoth = { figures: 0.01, "near-fence": 0.105 };
 const seen = {};
+const seen_of = (side) => (seen[side.method] ??= {});
 function better_on_both({ state, side, truth }) {
   if (!is_own_method(side.method)) return false;
-  const most = { figures: 0.01, "near-fence": 0.105 };
-  const of_method = seen[side.method] ??= {};
-  if (is_below({ truth }, most[state.scene] ?? 0)) of_method[state.scene] = true;
-  return Object.keys(most).every((scene) => of_method[scene]);
+  if (is_below({ truth }, kMostOfBoth[state.scene] ?? 0)) seen_of(side)[state.scene] = true;
+  return Object.keys(kMostOfBoth).every((scene) => seen_of(side)[scene]);
+}
+function both_text({ side, truth }) {
+  const done = Object.keys(kMostOfBoth).filter((scene) => seen_of(side)[scene]);
+  return `${flip_text({ truth })}${done.length > 0 ? `; ${done.join(", ")} ✓` : ""}`;
 }
 
 export const kSteps = {
@@ -116,6 +120,6 @@ export const kSteps = {
   5.3: { watch: flip_text,
          found: ({ state, side, ...world }) => state.scene === "near-fence" && is_own_method(side.method) &&
                                                is_below(world, 0.12) },
-  5.4: { watch: flip_text, found: better_on_both },
+  5.4: { watch: both_text, found: better_on_both },
   5.5: { found: () => by_id("shader-differences").textContent !== "" },
 };

@@ -25,14 +25,15 @@ export function read_lessons(text) {
   return chapters;
 }
 
-/** Bold, code and links. Of a link to a file beside the text its words are left. */
+/** Bold, emphasis, code and links. Of a link to a file beside the text its words are left. */
 export function inline_nodes(text) {
   const nodes = [];
   let end = 0;
-  for (const found of text.matchAll(/\*\*(.+?)\*\*|`([^`]+)`|\[([^\]]+)\]\(([^)]+)\)/g)) {
-    const [all, bold, code, words, target] = found;
+  for (const found of text.matchAll(/\*\*(.+?)\*\*|\*([^*]+)\*|`([^`]+)`|\[([^\]]+)\]\(([^)]+)\)/g)) {
+    const [all, bold, emphasis, code, words, target] = found;
     nodes.push(text.slice(end, found.index));
     if (bold) nodes.push(element("b", {}, ...inline_nodes(bold)));
+    else if (emphasis) nodes.push(element("em", {}, ...inline_nodes(emphasis)));
     else if (code) nodes.push(element("code", {}, code));
     else if (/^https?:/.test(target)) nodes.push(element("a", { href: target }, words));
     else nodes.push(...inline_nodes(words));
