@@ -63,6 +63,14 @@ function flip(ask, views) {
 const run = (...words) => execFileSync(program, words, { cwd: work, encoding: "utf8",
                                                          stdio: ["ignore", "pipe", "ignore"] });
 
+function compared(a, b) {
+  try {
+    return JSON.parse(run("compare", a, b, "--json"));
+  } catch (error) {
+    return JSON.parse(error.stdout);  // status 1: they differ
+  }
+}
+
 /** FLIP of a lesson's shader, or of the text that `change` makes of it, against the truth there. */
 function flip_of_shader(name, scene, change = (text) => text) {
   const text = fs.readFileSync(path.join(kLesson, `${name}.frag`), "utf8");
@@ -74,11 +82,7 @@ function flip_of_shader(name, scene, change = (text) => text) {
     run("render", scene, "--size", "512x512", "--multisample", "1", "--method", "accumulation", "--samples", "256",
         "-o", truth);
   }
-  try {
-    return JSON.parse(run("compare", "mine.npy", truth, "--json")).flip;
-  } catch (error) {
-    return JSON.parse(error.stdout).flip;  // status 1: they differ
-  }
+  return compared("mine.npy", truth).flip;
 }
 
 /** The pixels of a picture of numbers, as binary64, of one channel. */
@@ -181,7 +185,7 @@ function make_claims({ ask, frame, lens, half }) {
       const radius = (of) => lens.radius_px(of, 1, kFov, 512, 1);
       assert.ok(Math.abs(radius(longer) - radius(thin)) < 1e-9);
       const times = (of) => (of(longer) / of(thin)).toFixed(2);
-      return ["to 100 mm", `a hole of ${lens.aperture_of(longer)} mm`, "f/4. In",
+      return ["to 100 mm", `a hole of ${lens.aperture_of(longer)} mm`, "f/4. With",
               `it is ${times((of) => lens.circle_on_film(of, 1))} times as wide`, `film is ${times(film_of)} times`];
     },
     1.7: () => {
@@ -200,7 +204,7 @@ function make_claims({ ask, frame, lens, half }) {
         focal_length_mm *= lens.field_of_view_degrees({ ...full, focal_length_mm }, 7.3) / fov;
       }
       const hole_mm = focal_length_mm / 2;
-      return ["50 mm, f/2", "f-number at 2", "both say f/2", `About ${focal_length_mm.toFixed(1)} mm`,
+      return ["50 mm and f/2", "the stop at f/2", "both say f/2", `About ${focal_length_mm.toFixed(1)} mm`,
               `hole is ${hole_mm.toFixed(1)} mm wide in place of ${lens.aperture_of(full)} mm`,
               `${(lens.aperture_of(full) / hole_mm).toFixed(1)} times`];
     },
@@ -286,7 +290,14 @@ function make_claims({ ask, frame, lens, half }) {
     4.2: () => {
       const [before, after] = [1, 1.0001].map((m) => frame(kFigures, { focus: { m } }).hash);
       assert.notStrictEqual(before, after);
-      return ["from 1 m to 1.0001 m"];
+      for (const m of ["1", "1.0001"]) {
+        run("render", "figures", "--size", "512x512", "--multisample", "1", "--method", "two-pass", "--focus", m, "-o",
+            `focus-${m}.npy`);
+      }
+      const { values, differing, histogram } = compared("focus-1.npy", "focus-1.0001.npy");
+      const last_bit = histogram.find(({ half_ulps }) => half_ulps === "1").values;
+      return ["from 1 m to 1.0001 m", `${kGrouped(differing)} of the ${kGrouped(values)} numbers`,
+              `${kGrouped(last_bit)} of them by the last bit`];
     },
     4.3: () => {
       const numbers = [0.1, ...Array.from({ length: 60 }, (_, i) => 2000 + i), 4098, 65504, 65519, 65520, 70000];

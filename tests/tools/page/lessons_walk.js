@@ -109,7 +109,7 @@ module.exports = ({ test, drawn, set_number, has_compiler, ...of }) => {
     const keys = Object.keys(kDeeds).filter((key) => key.startsWith(`${number}.`));
     for (const key of keys) {
       assert.ok((await of.text_of(page, "step-title")).startsWith(key), key);
-      assert.doesNotMatch(await of.text_of(page, "step-text"), /\*\*|\]\(|<\/?details|`/, `${key}: Markdown`);
+      assert.doesNotMatch(await of.text_of(page, "lesson-step"), /\*\*|\]\(|<\/?details|`/, `${key}: Markdown`);
       if (kDeeds[key]) assert.strictEqual(await of.text_of(page, "step-state"), "Not found yet.", key);
       if (await page.locator("#step-set").isVisible()) {
         await page.locator("#step-set").click();
@@ -132,6 +132,36 @@ module.exports = ({ test, drawn, set_number, has_compiler, ...of }) => {
   for (const number of has_compiler ? [1, 2, 3, 4, 5] : [1, 2, 3, 4]) {
     test(`lesson ${number} can be gone through, and each step knows when it is found`, (page) => walk(page, number));
   }
+
+  test("the keyboard alone reaches the lessons and goes through them", async (page) => {
+    await page.locator("#tab-lens").focus();
+    await page.keyboard.press("ArrowLeft");
+    await page.keyboard.press("ArrowLeft");
+    await page.waitForSelector("#lesson-step:not([hidden])");
+    const press_on = async (id) => {
+      for (let i = 0; i < 40; ++i) {
+        if (await page.evaluate(() => document.activeElement.id) === id) return page.keyboard.press("Enter");
+        await page.keyboard.press("Tab");
+      }
+      throw new Error(`Tab does not come to ${id}`);
+    };
+    await press_on("step-set");
+    await drawn(page);
+    await press_on("step-next");
+    const focused = await page.evaluate(() => document.activeElement.textContent);
+    assert.ok(focused.startsWith("1.2"), focused);
+  });
+
+  test("on a phone the step goes along while its text is out of sight", async (page) => {
+    await tab(page, "lessons");
+    await page.waitForSelector("#lesson-step:not([hidden])");
+    await page.locator("#focus-part").scrollIntoViewIfNeeded();
+    await page.waitForSelector("#lesson-strip:not([hidden])");
+    assert.match(await of.text_of(page, "strip-title"), /^1\.1/);
+    await page.locator("#strip-back").click();
+    await page.waitForSelector("#lesson-strip", { state: "hidden" });
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= 390));
+  }, { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
 
   test("a link opens a lesson; what was found is kept, and can be forgotten", async (page, { context, address }) => {
     const other = await context.newPage();

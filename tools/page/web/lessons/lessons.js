@@ -99,7 +99,10 @@ export function start_lessons({ world, set_up, want_truth, tabs }) {
     by_id("strip-title").textContent = step ? `${key} ${step.title}` : "";
     if (step) {
       by_id("step-title").replaceChildren(...inline_nodes(`${key} ${step.title}`));
-      by_id("step-text").replaceChildren(...blocks_of(step.lines));
+      const blocks = blocks_of(step.lines);
+      const folded = blocks.filter(({ tagName }) => tagName === "DETAILS");
+      by_id("step-text").replaceChildren(...blocks.filter((block) => !folded.includes(block)));
+      by_id("step-fold").replaceChildren(...folded);
       by_id("step-set").hidden = !rule.state;
       by_id("half-part").hidden = !rule.half;
       by_id("answer-part").hidden = !rule.answer;
