@@ -390,6 +390,10 @@ async function main() {
       assert.deepStrictEqual(numbers_left(text, claims[key]({ text }), kSteps[key].state), []);
     }]);
   }
+  tests.push(["the teacher's disc of diffraction", () => {
+    const questions = chapters.find(({ title }) => title === "Questions for the class").lines.join("\n");
+    assert.match(questions, new RegExp(`2\\.44 · 0\\.55 µm · 22 = ${(2.44 * 0.55 * 22).toFixed(1)} µm`));
+  }]);
   for (const [claim, test] of tests) {
     if (process.env.ONLY && !claim.includes(process.env.ONLY)) continue;
     try {
