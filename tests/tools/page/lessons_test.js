@@ -185,7 +185,7 @@ function make_claims({ ask, frame, lens, half }) {
       const radius = (of) => lens.radius_px(of, 1, kFov, 512, 1);
       assert.ok(Math.abs(radius(longer) - radius(thin)) < 1e-9);
       const times = (of) => (of(longer) / of(thin)).toFixed(2);
-      return ["to 100 mm", `a hole of ${lens.aperture_of(longer)} mm`, "f/4. With",
+      return ["to 100 mm", `f/4: a hole of ${lens.aperture_of(longer)} mm again`,
               `it is ${times((of) => lens.circle_on_film(of, 1))} times as wide`, `film is ${times(film_of)} times`];
     },
     1.7: () => {
@@ -209,7 +209,7 @@ function make_claims({ ask, frame, lens, half }) {
               `${(lens.aperture_of(full) / hole_mm).toFixed(1)} times`];
     },
 
-    2.1: () => [`A lens is ${frame(kFigures).aperture_mm} mm wide`],
+    2.1: () => [`The lens is ${frame(kFigures).aperture_mm} mm wide`],
     2.2: () => {
       const what = { scene: "sphere-world" };
       assert.match(fs.readFileSync(path.join(top, "scenes/sphere-world.toml"), "utf8"), /^count = 250$/m);
@@ -245,7 +245,10 @@ function make_claims({ ask, frame, lens, half }) {
       return ["below 0.1", "none comes below 0.26"];
     },
 
-    3.1: () => ["Here are 4 points", "From about 64 on"],
+    3.1: () => {
+      accumulated(kFence, 64);
+      return ["Here are 4 points", `From about 64 on, with a FLIP of ${flip(ask, 512).toFixed(3)}`];
+    },
     3.2: () => {
       frame(kFigures);
       let reply = ask({ do: "truth", views: 8 });
