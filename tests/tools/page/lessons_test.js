@@ -318,7 +318,7 @@ function make_claims({ ask, frame, lens, half }) {
       const [nearest, cut] = ["ieee", "llvmpipe"].map((profile) => stored_by(profile, numbers));
       const stored = (by) => numbers.map((number) => by(Math.fround(number)));
       assert.deepStrictEqual([stored(half.nearest_half), stored(half.cut_half)], [nearest, cut]);
-      return [`near to 2049`, `last bit is 0: ${nearest[0]}`, "number above 2048",
+      return ["near to 2049", "goes towards 0", `last bit is 0: ${nearest[0]}`, "number above 2048",
               `2051: to the nearest, of 2050 and 2052 equally near, it becomes ${nearest[2]}; cut it becomes ${cut[2]}`];
     },
     4.5: () => {
