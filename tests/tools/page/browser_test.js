@@ -400,6 +400,8 @@ test("a failure case is a scene", async (page) => {
   assert.notStrictEqual(await drawn(page), first);
 });
 
+require("./lessons_walk.js")({ test, drawn, set_number, text_of, folder, single_file });
+
 test("all golden hashes are the native table's", async (page) => {
   await page.locator("#tab-hashes").click();
   await page.locator("#selftest").click();
@@ -560,32 +562,8 @@ async function prepend_to_worker(context, script) {
   });
 }
 
-require("./lessons_walk.js")({
-  test, drawn, set_number, text_of,
-  has_compiler: fs.existsSync(path.join(folder, "softfocus-compiler.wasm")),
-});
-
-/** Another address of this machine than its own. */
-const of_network = Object.values(os.networkInterfaces()).flat()
-    .find(({ family, internal }) => !internal && family === "IPv4");
-if (of_network && fs.existsSync(path.join(folder, "softfocus-simd.wasm"))) {
-  test("served to the network the page has one thread, and the same bits", async (page) => {
-    const hash = await drawn(page);
-    const { server, address } = await serve("0.0.0.0");
-    try {
-      assert.ok(!address.includes("localhost"), address);
-      await page.goto(address);
-      assert.strictEqual(await drawn(page), hash);
-      assert.match(await text_of(page, "version"), /one thread/);
-    } finally {
-      server.removeAllListeners("exit");
-      server.kill();
-    }
-  });
-}
-
-function serve(host = "127.0.0.1") {
-  const server = spawn("node", [path.join(__dirname, "../../../tools/page/serve.js"), folder, "0", host]);
+function serve() {
+  const server = spawn("node", [path.join(__dirname, "../../../tools/page/serve.js"), folder, "0"]);
   return new Promise((done, fail) => {
     server.on("exit", () => fail(new Error("serve.js ended")));
     server.stdout.on("data", (line) => {
@@ -645,12 +623,8 @@ async function main() {
       if (!await run_one(browsers, address, one)) ++failed;
     }
     if (single_file && !wanted) {
-      const one = { claim: "one file, opened from disk, has the program's bits and the lessons", options: {},
-                    run: async (page) => {
-                      await equals_program(page);
-                      await page.locator("#tab-lessons").click();
-                      await page.waitForSelector("#lesson-step:not([hidden])");
-                    } };
+      const one = { claim: "one file, opened from disk, has the program's bits", options: {},
+                    run: equals_program };
       if (!await run_one(browsers, pathToFileURL(path.resolve(single_file)).href, one)) ++failed;
     }
   } finally {

@@ -3,15 +3,35 @@
 "use strict";
 
 const assert = require("assert");
+const { spawn } = require("child_process");
 const fs = require("fs");
+const os = require("os");
 const path = require("path");
+const { pathToFileURL } = require("url");
 
 const kFoundMs = 120000;
 const kLesson = path.join(__dirname, "../../../scenes/pipelines/lesson");
 const kPast = "if (texel.a > depth_m) theirs = depth_m < focus_m ? own : min(theirs, own);";
 
+/** Another address of this machine than localhost, if it has one. */
+const of_network = Object.values(os.networkInterfaces()).flat()
+    .find(({ family, internal }) => !internal && family === "IPv4")?.address;
+
+/** Serves the folder to the network. */
+function serve(folder) {
+  const server = spawn("node", [path.join(__dirname, "../../../tools/page/serve.js"), folder, "0", of_network]);
+  return new Promise((done, fail) => {
+    server.on("exit", () => fail(new Error("serve.js ended")));
+    server.stdout.on("data", (line) => {
+      const found = /http:\S+/.exec(line);
+      if (found) done({ server, address: found[0] });
+    });
+  });
+}
+
 /** `of` has browser_test.js's helpers. */
-module.exports = ({ test, drawn, set_number, has_compiler, ...of }) => {
+module.exports = ({ test, drawn, set_number, folder, single_file, ...of }) => {
+  const has = (name) => fs.existsSync(path.join(folder, name));
   const show = (page, kind) => page.locator(`input[name=show][value=${kind}]`).check({ force: true });
   const tab = (page, name) => page.locator(`#tab-${name}`).click();
   const method = (name) => (page) => page.locator("#method").selectOption(name);
@@ -129,8 +149,36 @@ module.exports = ({ test, drawn, set_number, has_compiler, ...of }) => {
     if (number === 5) assert.match(words, /\(5 of 5\)/);
   }
 
-  for (const number of has_compiler ? [1, 2, 3, 4, 5] : [1, 2, 3, 4]) {
+  for (const number of has("softfocus-compiler.wasm") ? [1, 2, 3, 4, 5] : [1, 2, 3, 4]) {
     test(`lesson ${number} can be gone through, and each step knows when it is found`, (page) => walk(page, number));
+  }
+
+  if (single_file) {
+    test("the page in one file has the lessons", async (page) => {
+      await page.goto(pathToFileURL(single_file).href);
+      await drawn(page);
+      await tab(page, "lessons");
+      await page.waitForSelector("#lesson-step:not([hidden])");
+      await page.locator("#step-set").click();
+      await kDeeds["1.1"](page);
+      await state_is(page, "✓ Found.");
+    });
+  }
+
+  if (of_network && has("softfocus-simd.wasm")) {
+    test("served to the network the page has one thread, and the same bits", async (page) => {
+      const hash = await drawn(page);
+      const { server, address } = await serve(folder);
+      try {
+        assert.ok(address.includes(of_network), address);
+        await page.goto(address);
+        assert.strictEqual(await drawn(page), hash);
+        assert.match(await of.text_of(page, "version"), /one thread/);
+      } finally {
+        server.removeAllListeners("exit");
+        server.kill();
+      }
+    });
   }
 
   test("the keyboard alone reaches the lessons and goes through them", async (page) => {

@@ -130,7 +130,7 @@ function shown_lens() {
 
 const show_lens = () => lens_view.show(shown_lens());
 
-const lessons = start_lessons({
+start_lessons({
   world: () => ({ state: store.get(), side: store.side(), lens: shown_lens(), frame: last_reply,
                   truth: truth.numbers(), settled: frames.settled() }),
   set_up: open_link,
@@ -524,7 +524,6 @@ async function open_link(fragment) {
   const seed = /^random:([0-9]{1,20})$/.exec(wanted.scene ?? "");
   if (seed) by_id("seed").value = seed[1];
   const done = await open(wanted, { words });
-  if (words.has("lesson")) await lessons.open(words.get("lesson"));
   if (done || opened) return;
   const line = by_id("error-text").textContent;
   await open({ scene: "figures" });

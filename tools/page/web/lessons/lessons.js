@@ -3,6 +3,7 @@
 // browser where it allows that.
 
 import { announce, by_id, element } from "../dom.js";
+import { read_link } from "../link.js";
 import { start_half } from "./half.js";
 import { kSteps } from "./steps.js";
 import { blocks_of, inline_nodes, read_lessons } from "./text.js";
@@ -190,13 +191,15 @@ export function start_lessons({ world, set_up, want_truth, tabs }) {
   by_id("tab-lessons").addEventListener("click", begin);
   by_id("tab-lessons").addEventListener("focus", begin);  // arrow keys choose a tab and focus it
 
-  return {
-    /** Opens a step by its key, or a lesson by its number; the first one if there is none such. */
-    async open(key) {
-      tabs.choose("tab-lessons");
-      await begin();
-      const wanted = step_of(key) ? key : `${key}.1`;
-      show(step_of(wanted) ? wanted : keys()[0]);
-    },
-  };
+  /** What the address asks for: a step's key or a lesson's number; the first one if there is none such. */
+  async function open_linked() {
+    const key = read_link(location.hash).get("lesson");
+    if (!key) return;
+    tabs.choose("tab-lessons");
+    await begin();
+    const wanted = step_of(key) ? key : `${key}.1`;
+    show(step_of(wanted) ? wanted : keys()[0]);
+  }
+  window.addEventListener("hashchange", open_linked);
+  open_linked();
 }
