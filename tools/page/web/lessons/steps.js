@@ -28,7 +28,6 @@ const is_below = ({ truth }, most) =>
 const focus_text = ({ lens }) => `focus ${metres_text(lens.lens.focus_m)}`;
 const circle_text = ({ lens }) => `circle ${pixels_text(2 * Math.abs(lens.radius_px))} wide, on film ` +
                                   `${millimetres_text(lens.circle_mm)}`;
-const is_shown = (id) => !by_id(id).hidden;
 
 /** Methods whose image of a point is round. */
 const kRound = ["one-pass", "importance-ordered", "scatter", "scatter-sorted", "scatter-aperture", "layers", "fields",
@@ -110,7 +109,7 @@ export const kSteps = {
          found: ({ half: { value } }) => value > 2048 && value < 65520 && Number.isInteger(value) &&
                                          nearest_half(value) !== cut_half(value) },
   4.5: { half: true, answer: { value: () => 256 * weight_of_bits(0.3, 8), part: 0, unit: "256ths" } },
-  4.6: { state: "scene=figures", found: () => is_shown("gpu-table") },
+  4.6: { state: "scene=figures", found: () => by_id("gpu-differences").textContent !== "" },
 
   5.1: { state: "scene=figures", watch: flip_text,
          found: ({ state, side, truth }) => state.show === "error" && is_own_method(side.method) && Boolean(truth) },

@@ -47,7 +47,9 @@ function table_of(lines) {
   const row = (tag, cells) => element(
       "tr", {}, ...cells.map((cell) => element(tag, { class: "words" }, ...inline_nodes(cell))));
   const body = element("tbody", {}, ...rows.slice(2).map((cells) => row("td", cells)));
-  return element("div", { class: "scroll" }, element("table", {}, element("thead", {}, row("th", rows[0])), body));
+  const box = element("div", { class: "scroll", role: "region", "aria-label": rows[0].join(", "), tabindex: 0 });
+  box.append(element("table", {}, element("thead", {}, row("th", rows[0])), body));
+  return box;
 }
 
 function list_of(lines, tag) {
