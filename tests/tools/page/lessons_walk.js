@@ -160,6 +160,8 @@ module.exports = ({ test, drawn, set_number, folder, single_file, ...of }) => {
       await tab(page, "lessons");
       await page.waitForSelector("#lesson-step:not([hidden])");
       await page.locator("#step-set").click();
+      await page.waitForSelector("#step-set:not([aria-disabled])");
+      await drawn(page);
       await kDeeds["1.1"](page);
       await state_is(page, "✓ Found.");
     });
@@ -203,6 +205,7 @@ module.exports = ({ test, drawn, set_number, folder, single_file, ...of }) => {
   test("on a phone the step goes along while its text is out of sight", async (page) => {
     await tab(page, "lessons");
     await page.waitForSelector("#lesson-step:not([hidden])");
+    await page.locator("#step-set").tap();
     await page.locator("#focus-part").scrollIntoViewIfNeeded();
     await page.waitForSelector("#lesson-strip:not([hidden])");
     assert.match(await of.text_of(page, "strip-title"), /^1\.1/);

@@ -45,6 +45,7 @@ export function start_lessons({ world, set_up, want_truth, tabs }) {
   let at = "";  // the step's key, or a chapter's title
   let found = new Set();
   let begun = false;
+  let is_used = false;  // not only looked at: then the strip goes along
 
   const lesson_of = (key) => chapters.find(({ steps }) => steps.some((step) => step.key === key));
   const step_of = (key) => lesson_of(key)?.steps.find((step) => step.key === key);
@@ -89,6 +90,7 @@ export function start_lessons({ world, set_up, want_truth, tabs }) {
 
   /** Shows a step, or a chapter that has none. */
   function show(key, with_focus = true) {
+    is_used = is_used || with_focus;
     at = key;
     const step = step_of(key);
     const rule = kSteps[key] ?? {};
@@ -133,7 +135,7 @@ export function start_lessons({ world, set_up, want_truth, tabs }) {
   }
 
   function look() {
-    by_id("lesson-strip").hidden = !begun || !step_of(at) || is_in_sight(by_id("step-title"));
+    by_id("lesson-strip").hidden = !is_used || !step_of(at) || is_in_sight(by_id("step-title"));
     const rule = kSteps[at];
     if (!begun || !rule) return;
     const now = { ...world(), half: half.numbers() };
@@ -174,6 +176,7 @@ export function start_lessons({ world, set_up, want_truth, tabs }) {
   by_id("step-next").addEventListener("click", () => go(1));
   by_id("step-set").addEventListener("click", async ({ target }) => {
     const { state, truth } = kSteps[at];
+    is_used = true;
     target.setAttribute("aria-disabled", "true");
     await set_up(state);
     target.removeAttribute("aria-disabled");
