@@ -1,10 +1,13 @@
-// Serves a folder on this machine alone, with the headers that threads in a page need:
+// Serves a folder, with the headers that threads in a page need:
 //
-//   node serve.js FOLDER PORT
+//   node serve.js FOLDER PORT [ADDRESS]
+//
+// ADDRESS is one of this machine's; 0.0.0.0 stands for all. Without it this machine alone is served.
 "use strict";
 
 const fs = require("fs");
 const http = require("http");
+const os = require("os");
 const path = require("path");
 
 const kTypes = {
@@ -17,6 +20,7 @@ const kTypes = {
 };
 
 const [folder, port] = [path.resolve(process.argv[2]), Number(process.argv[3])];
+const host = process.argv[4] ?? "127.0.0.1";
 
 function answer(request, response) {
   const asked = decodeURIComponent(new URL(request.url, "http://localhost").pathname);
@@ -42,9 +46,25 @@ const server = http.createServer((request, response) => {
 });
 server.on("error", (error) => {
   console.error(error.code === "EADDRINUSE"
-      ? `port ${port} is taken; --port gives another` : error.message);
+      ? `port ${port} is taken; --port gives another`
+      : error.code === "EADDRNOTAVAIL" ? `${host} is no address of this machine` : error.message);
   process.exit(1);
 });
-server.listen(port, "127.0.0.1", () => {
-  console.log(`The simulator: http://localhost:${server.address().port}/   (end with Ctrl+C)`);
+
+/** What others type: of all addresses those that reach this machine from the network. */
+function addresses() {
+  if (host !== "0.0.0.0" && host !== "::") return [host];
+  const found = Object.values(os.networkInterfaces()).flat()
+      .filter(({ family, internal }) => !internal && (family === "IPv4" || family === 4));
+  return found.map(({ address }) => address);
+}
+
+server.listen(port, host, () => {
+  const at = (address) => `http://${address.includes(":") ? `[${address}]` : address}:${server.address().port}/`;
+  const is_local = /^(127\.|::1$|localhost$)/.test(host);
+  console.log(`The simulator: ${at(is_local ? "localhost" : addresses()[0] ?? host)}   (end with Ctrl+C)`);
+  if (is_local) return;
+  for (const address of addresses().slice(1)) console.log(`           or: ${at(address)}`);
+  console.log("Everybody in this network can open the page. They send nothing: it runs in their browsers.\n" +
+              "Without HTTPS these give it one thread.");
 });

@@ -120,8 +120,9 @@ function page() {
     return "";
   });
   if (!entry) fail("index.html: no script of type module");
+  const lessons = `<script type="text/plain" id="softfocus-lessons">${harmless(read("lesson/teaching.md"))}</script>`;
   // A module runs when the page has been read: so does this script, at its end.
-  const scripts = `${worker_parts()}\n<script>\n${harmless(bundle(entry))}\n</script>\n`;
+  const scripts = `${lessons}\n${worker_parts()}\n<script>\n${harmless(bundle(entry))}\n</script>\n`;
   const end = html.lastIndexOf("</body>");
   html = end < 0 ? html + scripts : html.slice(0, end) + scripts + html.slice(end);
   const left = html.replace(/<script[\s\S]*?<\/script>/g, "").match(/(?:src|href)="(?!#|data:|https?:)[^"]*"/);

@@ -907,6 +907,8 @@ test("a failure case is a scene", async (page) => {
   assert.notStrictEqual(await drawn(page), first);
 });
 
+require("./lessons_walk.js")({ test, drawn, set_number, text_of, folder, single_file });
+
 test("all golden hashes are the native table's", async (page) => {
   await page.locator("#tab-hashes").click();
   await page.locator("#selftest").click();

@@ -12,6 +12,7 @@ import { start_gpu } from "./panels/gpu.js";
 import { show_hash, start_hashes } from "./panels/hashes.js";
 import { start_keys } from "./keys.js";
 import { lens_numbers, start_lens_view } from "./lens/lens_view.js";
+import { start_lessons } from "./lessons/lessons.js";
 import { link_of, read_link, shader_of, state_to_open, take_shader, with_link } from "./link.js";
 import { make_methods_table } from "./panels/methods_table.js";
 import { start_own_files } from "./panels/own_files.js";
@@ -146,13 +147,23 @@ const tabs = start_tabs(document.querySelector("[role=tablist]"), (id) => {
   if (id === "tab-shader") shader.open();
 });
 
-function show_lens() {
+function shown_lens() {
   const state = store.get();
   const size = state.picture?.size ?? state.size;
   const fov = last_reply?.fov_y_degrees ?? camera()?.fov_y_degrees ?? opened?.camera?.fov_y_degrees;
-  lens_view.show(lens_numbers({ ...state, size }, { ...store.side(), max_coc_px: max_coc() }, focus_m(),
-                              object_m(), fov ?? 40));
+  return lens_numbers({ ...state, size }, { ...store.side(), max_coc_px: max_coc() }, focus_m(), object_m(),
+                      fov ?? 40);
 }
+
+const show_lens = () => lens_view.show(shown_lens());
+
+start_lessons({
+  world: () => ({ state: store.get(), side: store.side(), lens: shown_lens(), frame: last_reply,
+                  truth: truth.numbers(), settled: frames.settled() }),
+  set_up: open_link,
+  want_truth: () => truth.want(true),
+  tabs,
+});
 
 function show_cross() {
   const { at } = store.side().focus;
