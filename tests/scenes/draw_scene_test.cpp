@@ -2,7 +2,11 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <vector>
 
 #include "raster/images/texel.h"
 #include "scenes/load/load_scene.h"
@@ -112,6 +116,119 @@ TEST_CASE("a texture keeps its place: (0, 0) is the image's upper left corner") 
   CHECK(load_texel(image, 25, 25).x == 1.0f);  // upper left: red
   CHECK(load_texel(image, 39, 25).y == 1.0f);  // upper right: green
   CHECK(load_texel(image, 25, 39).z == 1.0f);  // lower left: blue
+}
+
+TEST_CASE("a pixel across two texels has the part of its reads that lie on each") {
+  constexpr double kPixelsPerMetre = 65.0 / (2.0 * 4.0 * 0.36397023426620234);  // tan(20 degrees)
+  Scene scene = square_scene();
+  Image texels = make_image(Format::rgba8, 2, 1);
+  store_texel(texels, 0, 0, glm::vec4{0.0f}, kProfile);
+  store_texel(texels, 1, 0, glm::vec4{1.0f}, kProfile);
+  scene.textures.push_back(make_texture(std::move(texels)));
+  scene.materials[0].texture = 0;
+  scene.materials[0].sampler = {Filter::nearest, Wrap::clamp_to_edge, Wrap::clamp_to_edge};
+  struct Case {
+    double seam_px;  // to the right of the centre, or below it
+    int reads;
+    float value;
+  };
+  for (const bool upright : {true, false}) {
+    if (!upright) scene.meshes[0].uvs = {{1, 0}, {1, 0}, {0, 0}, {0, 0}};
+    for (const auto& [seam_px, reads, value] : {Case{0.1, 1, 0.0f},
+                                                {-0.1, 1, 1.0f},
+                                                {0.2, 2, 0.5f},
+                                                {0.3, 2, 0.0f},
+                                                {-0.3, 2, 1.0f},
+                                                {0.45, 4, 0.0f},
+                                                {0.2, 4, 0.25f},
+                                                {0.05, 4, 0.5f},
+                                                {-0.2, 4, 0.75f},
+                                                {-0.45, 4, 1.0f}}) {
+      CAPTURE(upright);
+      CAPTURE(seam_px);
+      CAPTURE(reads);
+      const double metres = seam_px / kPixelsPerMetre;
+      scene.objects[0].position = upright ? glm::dvec3{metres, 0, 0} : glm::dvec3{0, -metres, 0};
+      for (const Isa isa : available_isas()) {
+        ThreadPool pool{1, isa};
+        PreparedScene prepared = prepare_scene(scene, kProfile, pool);
+        prepared.texture_reads = reads;
+        Image image = make_image(Format::rgba16f, 65, 65);
+        draw_scene(prepared, camera_matrices(scene.camera, 0, 65, 65), 0, image, pool);
+        CHECK(centre(image).x == value);
+      }
+    }
+  }
+}
+
+TEST_CASE("several reads of textures in lanes have the scalar form's bits") {
+  constexpr int kWidth = 333, kHeight = 250;
+  for (const char* name : {"cube-room", "sphere-world", "canopy"}) {
+    const Scene scene = load_scene(name, scene_search_path({}));
+    const CameraMatrices view = camera_matrices(scene.camera, 0, kWidth, kHeight);
+    for (const char* profile_name : {"ieee", "llvmpipe", "softpipe"}) {
+      const Profile profile = find_profile(profile_name).value();
+      const auto hash_by = [&](Isa isa, int reads) {
+        ThreadPool pool{2, isa};
+        PreparedScene prepared = prepare_scene(scene, profile, pool);
+        prepared.texture_reads = reads;
+        Image image = make_image(Format::rgba16f, kWidth, kHeight);
+        draw_scene(prepared, view, 0, image, pool);
+        return hash_image(image);
+      };
+      const auto of_one = hash_by(Isa::scalar, 1);
+      for (const int reads : {2, 4}) {
+        CAPTURE(name);
+        CAPTURE(profile_name);
+        CAPTURE(reads);
+        const auto expected = hash_by(Isa::scalar, reads);
+        CHECK(expected != of_one);
+        for (const Isa isa : available_isas()) CHECK(hash_by(isa, reads) == expected);
+      }
+    }
+  }
+}
+
+TEST_CASE("a picture with edges reads its textures more than once, and is nearer to many samples") {
+  const Scene scene = load_scene("grazing-floor", scene_search_path({}));
+  constexpr int kSize = 128, kFiner = 8;
+  ThreadPool pool{2};
+  const auto drawn = [&](int samples) {
+    PreparedScene prepared = prepare_scene(scene, kProfile, pool);
+    Image image = make_image(Format::rgba16f, kSize, kSize);
+    EdgePictures edges{.samples = samples};
+    draw_layers(prepared, camera_matrices(scene.camera, 0, kSize, kSize), 0, image, {}, pool, {},
+                samples == 1 ? nullptr : &edges);
+    CHECK(prepared.texture_reads == 1);
+    return image;
+  };
+  // Pixels of the mean of many views, each moved within the pixel.
+  std::vector<glm::vec3> mean(std::size_t{kSize} * kSize, glm::vec3{0.0f});
+  for (int i = 0; i < kFiner * kFiner; ++i) {
+    CameraMatrices view = camera_matrices(scene.camera, 0, kSize, kSize);
+    const glm::dvec2 place{(i % kFiner + 0.5) / kFiner - 0.5, (i / kFiner + 0.5) / kFiner - 0.5};
+    for (int axis = 0; axis < 2; ++axis) view.eye_to_clip[2][axis] += 2.0 * place[axis] / kSize;
+    const Image image = draw_scene(scene, view, 0, kSize, kSize, kProfile, pool);
+    for (std::size_t at = 0; at < mean.size(); ++at) {
+      const auto x = static_cast<int>(at % kSize), y = static_cast<int>(at / kSize);
+      mean[at] += glm::vec3{load_texel(image, x, y)} / static_cast<float>(kFiner * kFiner);
+    }
+  }
+  const auto error = [&](const Image& image) {
+    double sum = 0.0;
+    for (std::size_t at = 0; at < mean.size(); ++at) {
+      const auto x = static_cast<int>(at % kSize), y = static_cast<int>(at / kSize);
+      const glm::vec3 off = glm::vec3{load_texel(image, x, y)} - mean[at];
+      sum += static_cast<double>(glm::dot(off, off));
+    }
+    return sum;
+  };
+  const double of_one = error(drawn(1)), of_four = error(drawn(4)), of_eight = error(drawn(8));
+  CAPTURE(of_one);
+  CAPTURE(of_four);
+  CAPTURE(of_eight);
+  CHECK(of_four < 0.7 * of_one);
+  CHECK(of_eight < 0.7 * of_four);
 }
 
 TEST_CASE("normals stay perpendicular under an uneven scale") {
