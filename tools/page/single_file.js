@@ -3,11 +3,13 @@
 //   node single_file.js FOLDER FILE
 //
 // Browsers load neither modules nor workers from files. So the page's modules become functions of
-// one script, the worker a blob, and the WebAssembly module text in base64.
+// one script, the worker a blob, and the WebAssembly module text in base64, compressed: browsers that have
+// no DecompressionStream (Firefox before 113) are told so.
 "use strict";
 
 const fs = require("fs");
 const path = require("path");
+const zlib = require("zlib");
 
 const [folder, target] = process.argv.slice(2);
 const read = (name) => fs.readFileSync(path.join(folder, name), "utf8");
@@ -76,7 +78,8 @@ const harmless = (script) => script.replace(/<\/(script)/gi, "<\\/$1").replace(/
 
 /** A worker from the texts of the page: the module's script is run when it is asked for. */
 function worker_parts() {
-  const wasm = fs.readFileSync(path.join(folder, "softfocus-simd.wasm")).toString("base64");
+  const wasm = zlib.deflateSync(fs.readFileSync(path.join(folder, "softfocus-simd.wasm")), { level: 9 })
+      .toString("base64");
   return `<script type="text/plain" id="softfocus-wasm">${wasm}</script>
 <script type="text/plain" id="softfocus-script">${harmless(read("softfocus-simd.js"))}</script>
 <script type="text/plain" id="softfocus-worker">${harmless(read("worker.js"))}</script>
@@ -94,7 +97,10 @@ function worker_parts() {
       "\\nself.createSoftfocus = createSoftfocus; }, async wasm() { const text = atob(\\"" + wasm +
       "\\"); const bytes = new Uint8Array(text.length);" +
       " for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);" +
-      " return bytes.buffer; }};\\n";
+      " if (typeof DecompressionStream === \"undefined\") throw new Error(" +
+      "\"this file needs a browser from 2023 or later; the page on a server does without\");" +
+      " const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream(\"deflate\"));" +
+      " return new Response(stream).arrayBuffer(); }};\\n";
   const blob = new Blob([parts, text_of("softfocus-worker")], { type: "text/javascript" });
   globalThis.softfocus_worker = URL.createObjectURL(blob);
 })();

@@ -13,10 +13,12 @@ const os = require("os");
 const path = require("path");
 const { pathToFileURL } = require("url");
 const { chromium } = require("playwright-core");
+const { triangle_glb, triangle_gltf } = require("./triangle_gltf.js");
 
 const [folder, program, single_file] = process.argv.slice(2).map((name) => path.resolve(name));
 const work = fs.mkdtempSync(path.join(os.tmpdir(), "softfocus-browser-"));
 const kFrameMs = 60000;
+const kMostBytesOfOneFile = 3e6;
 
 const tests = [];
 /** `options` are of the browser's context. A page has loaded and drawn its first frame. */
@@ -214,6 +216,22 @@ function drop(page, names) {
     document.dispatchEvent(new DragEvent("drop", { dataTransfer: transfer, cancelable: true }));
   }, files);
 }
+
+test("glTF that is dropped is drawn, in one file and in three", async (page) => {
+  const seen = new Set([await drawn(page)]);
+  execFileSync(program, ["render", "figures", "--size", "16x16", "-o", "base.png"], { cwd: work, stdio: "ignore" });
+  const png = fs.readFileSync(path.join(work, "base.png"));
+  const three = triangle_gltf(png);
+  for (const files of [{ "triangle.glb": triangle_glb(png) }, three]) {
+    const names = Object.keys(files);
+    for (const name of names) fs.writeFileSync(path.join(work, name), files[name]);
+    await drop(page, names);
+    await page.waitForFunction((name) => document.getElementById("scene").value === `/own/${name}`, names[0],
+                               { timeout: kFrameMs });
+    seen.add(await drawn(page));
+  }
+  assert.strictEqual(seen.size, 2);  // both have the same bits
+});
 
 test("a picture and its depth are refocused with the program's bits, and scenes come back", async (page) => {
   const first = await drawn(page);
@@ -1103,7 +1121,11 @@ async function run_one(browsers, address, { claim, run, options }) {
 }
 
 const kOfOneFile = [
-  ["one file, opened from disk, has the program's bits", equals_program],
+  ["one file, opened from disk, has the program's bits and at most 3 MB", async (page) => {
+    await equals_program(page);
+    const { size } = fs.statSync(single_file);
+    assert.ok(size <= kMostBytesOfOneFile, `${size} bytes`);
+  }],
   ["in one file too whatever the visitor does ends a slow frame", slow_frame_gives_way],
 ];
 

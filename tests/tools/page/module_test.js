@@ -8,9 +8,12 @@ const { execFileSync } = require("child_process");
 const fs = require("fs");
 const os = require("os");
 const path = require("path");
+const zlib = require("zlib");
+const { triangle_glb, triangle_gltf } = require("./triangle_gltf.js");
 
 const [script, program] = process.argv.slice(2).map((name) => path.resolve(name));
 const kThreads = 2;
+const kMostBytes = 1.9e6;  // of the module, compressed
 
 async function start_module() {
   const create = require(script);
@@ -79,6 +82,11 @@ const kFrames = [
 ];
 
 const kTests = {
+  [`the module has at most ${kMostBytes} bytes, compressed`]() {
+    const bytes = zlib.gzipSync(fs.readFileSync(script.replace(/js$/, "wasm")), { level: 9 }).length;
+    assert.ok(bytes <= kMostBytes, `${bytes}`);
+  },
+
   "a frame has the hash that the program gives"({ ask }) {
     for (const { scene, settings, words } of kFrames) {
       assert.strictEqual(ask({ do: "open", scene }).error, undefined, scene);
@@ -117,6 +125,28 @@ const kTests = {
     const mine = ask({ do: "frame", size: [64, 64] });
     ask({ do: "open", scene: "figures" });
     assert.strictEqual(mine.hash, ask({ do: "frame", size: [64, 64] }).hash);
+  },
+
+  "glTF with a texture has the hash that the program gives, in one file and in three"({ module, ask }) {
+    const settings = { size: [96, 64] };
+    const words = ["--size", "96x64", "--method", "two-pass"];
+    const png_file = path.join(folder, "base.png");
+    execFileSync(program, ["render", "figures", "--size", "16x16", "-o", png_file], { stdio: "ignore" });
+    const png = fs.readFileSync(png_file);
+    const files = { "triangle.glb": triangle_glb(png), ...triangle_gltf(png) };
+    for (const [name, bytes] of Object.entries(files)) {
+      fs.writeFileSync(path.join(folder, name), bytes);
+      module.FS.writeFile(`/own/${name}`, bytes);
+    }
+    for (const name of ["triangle.glb", "triangle.gltf"]) {
+      const opened = ask({ do: "open", scene: `/own/${name}` });
+      assert.deepStrictEqual(opened.warnings, [], name);
+      assert.strictEqual(ask({ do: "frame", ...settings }).hash,
+                         native_hash([path.join(folder, name), ...words]), name);
+    }
+    module.FS.writeFile("/own/broken.glb", files["triangle.glb"].subarray(0, 99));
+    assert.match(ask({ do: "open", scene: "/own/broken.glb" }).error, /broken\.glb/);
+    for (const name of Object.keys(files)) fs.rmSync(path.join(folder, name));
   },
 
   "a picture and its depth have the hash and the file that `refocus` gives"({ module, ask }) {

@@ -207,6 +207,8 @@ test("of dropped files the scene is opened, else the model", async () => {
   const { scene_among } = await module_of("panels/own_files.js");
   assert.strictEqual(scene_among(["a/b.obj", "b.mtl", "c.OBJ"]), "c.OBJ");
   assert.strictEqual(scene_among(["c.obj", "deep/room.toml"]), "deep/room.toml");
+  assert.strictEqual(scene_among(["scene.bin", "scene.gltf", "base.png"]), "scene.gltf");
+  assert.strictEqual(scene_among(["car.GLB", "car.stl"]), "car.GLB");
   assert.strictEqual(scene_among(["a.png"]), undefined);
 });
 

@@ -24,13 +24,13 @@ const kMostThreads = 16;
 const kSliceMs = 100;
 
 // Modules of a few bytes, each with one instruction of what it asks for. What their bytes say:
-// a function that drops a v128.const; one that does an atomic load on a shared memory; one with
-// an empty try and catch_all.
+// a function that drops a v128.const; one that does an atomic load; one with an empty try and
+// catch_all.
 const kProbes = {
   simd: [0, 97, 115, 109, 1, 0, 0, 0, 1, 4, 1, 96, 0, 0, 3, 2, 1, 0, 10, 23, 1, 21, 0, 253, 12,
          0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 26, 11],
-  atomics: [0, 97, 115, 109, 1, 0, 0, 0, 1, 4, 1, 96, 0, 0, 3, 2, 1, 0, 5, 4, 1, 3, 1, 1, 10, 11,
-            1, 9, 0, 65, 0, 254, 16, 2, 0, 26, 11],
+  atomics: [0, 97, 115, 109, 1, 0, 0, 0, 1, 4, 1, 96, 0, 0, 3, 2, 1, 0, 5, 3, 1, 0, 1, 10, 11, 1,
+            9, 0, 65, 0, 254, 16, 2, 0, 26, 11],
   exceptions: [0, 97, 115, 109, 1, 0, 0, 0, 1, 4, 1, 96, 0, 0, 3, 2, 1, 0, 10, 8, 1, 6, 0, 6, 64,
                25, 11, 11],
 };
@@ -45,11 +45,12 @@ function choose_build() {
   if (typeof WebAssembly !== "object") return { build: null, missing: ["WebAssembly"] };
   if (!can_run("exceptions")) missing.push("WebAssembly exceptions");
   if (!can_run("simd")) missing.push("WebAssembly SIMD");
+  if (!can_run("atomics")) missing.push("WebAssembly atomics");
   if (missing.length > 0) return { build: "plain", missing };
   if (self.softfocus_parts) return { build: "simd", missing: ["threads, which one file has not"] };
   if (!self.crossOriginIsolated) {
     missing.push("threads, for which the host would have to send COOP and COEP headers");
-  } else if (typeof SharedArrayBuffer === "undefined" || !can_run("atomics")) {
+  } else if (typeof SharedArrayBuffer === "undefined") {
     missing.push("WebAssembly threads");
   } else if (thread_count() < 2) {
     missing.push("a second processor core");

@@ -34,7 +34,7 @@ export function scene_among(paths) {
   const depth = (path) => path.split("/").length;
   const of = (ending) => paths.filter((path) => path.toLowerCase().endsWith(ending))
       .sort((a, b) => depth(a) - depth(b) || (a < b ? -1 : 1))[0];
-  return of(".toml") ?? of(".obj") ?? of(".ply") ?? of(".stl");
+  return of(".toml") ?? of(".glb") ?? of(".gltf") ?? of(".obj") ?? of(".ply") ?? of(".stl");
 }
 
 // The module reads a part of them, and says of the others what converts them.
@@ -74,8 +74,8 @@ export function start_own_files({ open, open_picture, on_error }) {
     const found = scene ? null : picture_among(paths);
     const first = scene ?? found?.picture;
     if (!first) {
-      on_error("these files are no scene and no picture: give an .obj, .ply, .stl or a .toml with what it needs, " +
-               "or a picture and its depth map");
+      on_error("these files are no scene and no picture: give a .glb, .gltf, .obj, .ply, .stl or .toml with what " +
+               "it needs, or a picture and its depth map");
       return;
     }
     const total = chosen.reduce((sum, { file }) => sum + file.size, 0);
