@@ -586,7 +586,7 @@ void draw_triangles(PreparedScene& prepared, const CameraMatrices& camera, doubl
   make_sized(edges->other, picture.width, picture.height);
   make_sized(edges->coverage, picture.width, picture.height, Format::r8);
   const EdgeTargets to{edges->samples, &edges->other, &edges->coverage};
-  prepared.texture_reads = edges->samples / 2;
+  prepared.texture_reads = texture_reads_of(edges->samples);
   if (in_lanes) {
     if (isa == Isa::scalar) pass.isa = Isa::baseline;
     if (isa == Isa::scalar) decode_textures(prepared, pool);

@@ -88,6 +88,10 @@ struct StandIns {
       lay;
 };
 
+/// How often a pixel reads its surface's texture (texture_read_places()), if edges are found from so
+/// many samples. Half as many reads as samples: more would cost more than they bring.
+constexpr int texture_reads_of(int samples) { return samples == 1 ? 1 : samples / 2; }
+
 /// A scene made ready for many frames: decoded textures, and memory to use again.
 struct PreparedScene {
   const Scene* scene = nullptr;
@@ -106,7 +110,7 @@ struct PreparedScene {
   /// Objects that are not drawn, though they cast shadows: an entry each, or none at all.
   std::vector<std::uint8_t> hidden{};
   bool keeps_depth = false;   ///< `depth` is wanted once the scene is drawn
-  int texture_reads = 1;      ///< of a pixel with edges (surfaces/surface_stages.h)
+  int texture_reads = 1;      ///< of a pixel, as texture_reads_of()
   std::size_t triangles = 0;  ///< of the objects that draw_layers() has drawn as such
   /// Told how many points of soft lights have been drawn by; may be empty.
   std::function<void(int points)> on_light_points = {};

@@ -101,6 +101,7 @@ struct FrameRows::State {
     pass.targets.colour[0] = &picture;
     pass.targets.depth = &depth;
     if (shot.samples > 1) pass.edges = EdgeTargets{shot.samples, &other, &coverage};
+    prepared.texture_reads = texture_reads_of(shot.samples);
     record_scene(prepared, frame.view, shot.frame, pass);
     sort_into_tiles({&pass, 1}, {&tiles, 1}, pool);
     if (is_two_pass(shot)) {

@@ -60,13 +60,14 @@ TEST_CASE("a frame by rows: the bits of make_frame(), in every unit, by any numb
 
 TEST_CASE("a frame by rows: smooth edges too, and none of a band before where nothing is drawn") {
   const Scene figures = load_scene("figures", scene_search_path({}));
+  const Scene textured = load_scene("cube-room", scene_search_path({}));
   // In the upper half alone.
   const Scene ball = test::read(
       "background = [0.2, 0.4, 0.8]\n[camera]\nposition = [0, 0, 3]\ntarget = [0, 0, 0]\n"
       "[material.m]\ndiffuse = [1, 0.3, 0]\n[[object]]\nshape = \"sphere\"\nradius = 0.3\n"
       "position = [0, 0.8, 0]\nmaterial = \"m\"\n");
   ThreadPool pool{2, Isa::baseline};
-  for (const Scene* scene : {&figures, &ball}) {
+  for (const Scene* scene : {&figures, &textured, &ball}) {
     for (const char* const method : {"two-pass", "pinhole"}) {
       for (const int height : {1, 2, 63, 65, 300}) {
         Shot shot = shot_of(*scene, 0.0, 90, height, find_method_choice(method));
