@@ -144,11 +144,13 @@ const kFence = { scene: "near-fence" };
 const kGrouped = (number) => number.toLocaleString("en");
 
 /** The claims by step: phrases that its text must have, with numbers as they are computed here. */
-function make_claims({ ask, frame, lens, half }) {
+function make_claims({ ask, frame, lens, half, steps: { kSteps, kRound, kNotRound } }) {
   const pixel = (x, y) => ask({ do: "pixel", x, y });
   const thin = { focal_length_mm: 50, f_number: 2, focus_m: 2 };
   const kFov = ask({ do: "open", scene: "figures" }).camera.fov_y_degrees;
   const film_of = (of) => lens.film_height(of, kFov);
+  const is_before = (x, other) => pixel(x, 60).depth_m < pixel(other, 60).depth_m;
+  const is_darker = (x, other) => pixel(x, 60).colour_linear[0] < pixel(other, 60).colour_linear[0];
   const accumulated = (what, samples) => frame(what, { method: "accumulation", samples });
 
   return {
@@ -158,7 +160,11 @@ function make_claims({ ask, frame, lens, half }) {
     },
     1.2: () => {
       frame(kFigures);
-      return [`about ${pixel(169, 317).depth_m.toFixed(2)} m`];
+      const focus_m = pixel(169, 317).depth_m;
+      const found = (of_m) => kSteps["1.2"].found({ state: { show: "coc" }, lens: { lens: { focus_m: of_m } } });
+      assert.ok(!found(0.8) && !found(0.88));  // before and behind the ring
+      assert.ok(found(focus_m));
+      return [`about ${focus_m.toFixed(2)} m`];
     },
     1.3: () => {
       const circle_mm = lens.circle_on_film(thin, 4);
@@ -168,7 +174,8 @@ function make_claims({ ask, frame, lens, half }) {
       const wide_px = circle_mm / film_of(thin) * 512;
       return [`A = 50 / 2 = ${lens.aperture_of(thin)} mm`, "25 · 50 · 2000 / (4000 · 1950)",
               `= ${circle_mm.toFixed(3)} mm`, `film that the page takes is ${film_of(thin).toFixed(1)} mm high`,
-              `a picture of 512 pixels the circle is ${wide_px.toFixed(1)} pixels`];
+              `a picture of 512 pixels the circle is ${wide_px.toFixed(1)} pixels`,
+              `radius, ${(wide_px / 2).toFixed(2)} pixels`];
     },
     1.4: () => {
       const at_infinity = lens.circle_on_film(thin, 1e9);
@@ -204,7 +211,8 @@ function make_claims({ ask, frame, lens, half }) {
         focal_length_mm *= lens.field_of_view_degrees({ ...full, focal_length_mm }, 7.3) / fov;
       }
       const hole_mm = focal_length_mm / 2;
-      return ["50 mm and f/2", "the stop at f/2", "both say f/2", `About ${focal_length_mm.toFixed(1)} mm`,
+      return ["50 mm and f/2", `field of view is ${fov.toFixed(1)}°`, "the stop at f/2", "both say f/2",
+              `About ${focal_length_mm.toFixed(1)} mm`,
               `hole is ${hole_mm.toFixed(1)} mm wide in place of ${lens.aperture_of(full)} mm`,
               `${(lens.aperture_of(full) / hole_mm).toFixed(1)} times`];
     },
@@ -221,14 +229,22 @@ function make_claims({ ask, frame, lens, half }) {
               "π R²", "2 (2 R − 1)",
               `For R = ${enough} that is ${kGrouped(Math.round(Math.PI * enough ** 2))} and ${2 * (2 * enough - 1)}`];
     },
-    2.3: () => [],
+    2.3: () => {
+      const { methods } = ask({ do: "scenes" });
+      assert.deepStrictEqual([...kRound, ...kNotRound].sort(), methods.map(({ name }) => name).sort());
+      return [];
+    },
     2.4: () => {
       const of = (method) => (frame({ case: "leak-far", value: 16 }, { method }), flip(ask));
-      assert.ok(of("scatter") > 0.01 && of("scatter-sorted") < 0.005 && of("two-pass") < 0.005);
+      of("two-pass");
+      assert.ok(is_before(5, 400) && pixel(5, 60).coc_radius_px === 0 && is_darker(5, 400));
+      assert.ok(of("scatter") > 0.01 && of("scatter-sorted") < 0.005 && of("two-pass") < 0.005 && of("pinhole") === 0);
       return ["FLIP below 0.005", "0 is equal"];
     },
     2.5: () => {
       const of = (method) => (frame({ case: "near-edge", value: 16 }, { method }), flip(ask));
+      of("two-pass");
+      assert.ok(is_before(5, 400) && pixel(400, 60).coc_radius_px === 0 && is_darker(400, 5));
       for (const method of ["disc-layers", "layers", "mipmap", "object-identification", "ray-distribution-buffer"]) {
         assert.ok(of(method) < 0.005, method);
       }
@@ -242,7 +258,7 @@ function make_claims({ ask, frame, lens, half }) {
       const best = Math.min(...of_one.map(({ name }) => of(name)));
       assert.ok(best > 0.26, String(best));
       assert.ok(of("accumulation") < 0.1 && of("layered") < 0.1);
-      return ["below 0.1", "none comes below 0.26"];
+      return ["FLIP below 0.1", "none comes below 0.26"];
     },
 
     3.1: () => {
@@ -253,13 +269,13 @@ function make_claims({ ask, frame, lens, half }) {
       frame(kFigures);
       let reply = ask({ do: "truth", views: 8 });
       while (!reply.done) reply = ask({ do: "truth", views: 8 });
-      return [`After ${reply.samples} views`, `differ by ${reply.half_set_rms.toFixed(4)} of white`];
+      return [`After ${reply.samples} views`, `differ by ${reply.half_set_rms.toFixed(5)} of white`];
     },
     3.3: () => {
       const [few, many] = [64, 256].map((samples) => JSON.parse(run(
           "render", "figures", "--size", "512x512", "--multisample", "1", "--method", "accumulation", "--samples",
           String(samples), "--until", "1e-9", "-o", "few.npy", "--json")).sampling.half_set_rms);
-      return [`With 64 views the halves differed by ${few.toFixed(5)}`, `with 256 by ${many.toFixed(5)}`,
+      return [`with 64 views the halves differ by ${few.toFixed(5)}`, `with 256 by ${many.toFixed(5)}`,
               `a factor of 2.`, `${(few / many).toFixed(1)}. With random`];
     },
     3.4: () => {
@@ -280,7 +296,7 @@ function make_claims({ ask, frame, lens, half }) {
       const [one, two, six, seven] = [1, 2, 6, 7].map(of);
       const [two_pass, best] = [filter("two-pass"), filter("disc-layers")];
       assert.ok(one > two_pass && two < two_pass && six > best && seven < best);
-      return [`which has ${two_pass.toFixed(3)}`, `2, with ${two.toFixed(3)}`,
+      return [`\`two-pass\` has ${two_pass.toFixed(3)} here`, `2, with ${two.toFixed(3)}`,
               `\`disc-layers\` has ${best.toFixed(3)} here, and needs 7 points`];
     },
 
@@ -318,15 +334,17 @@ function make_claims({ ask, frame, lens, half }) {
       const [nearest, cut] = ["ieee", "llvmpipe"].map((profile) => stored_by(profile, numbers));
       const stored = (by) => numbers.map((number) => by(Math.fround(number)));
       assert.deepStrictEqual([stored(half.nearest_half), stored(half.cut_half)], [nearest, cut]);
-      return ["near to 2049", "goes towards 0", `last bit is 0: ${nearest[0]}`, "number above 2048",
-              `2051: to the nearest, of 2050 and 2052 equally near, it becomes ${nearest[2]}; cut it becomes ${cut[2]}`];
+      return ["2049 is in the middle between two halves, 2048 and 2050. The standard IEEE 754",
+              "goes towards 0", `last bit is 0: ${nearest[0]}`, "number above 2048",
+              `2051, in the middle between 2050 and 2052. Rounded it becomes ${nearest[2]}`, "last bit is 0. Cut",
+              `it becomes ${cut[2]}`];
     },
     4.5: () => {
       const wanted = 256 * half.weight_of_bits(0.3, 8);
       assert.strictEqual(weight_by("d3d11", 0.3), wanted);
       assert.ok(Math.abs(weight_by("ieee", 0.3) - 76.8) < 0.05);
       return ["0.3 of one, 0.7 of the other", "in 8 bits", "Type 0.3", "How many 256ths", "not 0.3 of",
-              `${wanted}, and ${wanted} / 256 = ${wanted / 256}`, "only 256 steps"];
+              `0.3 · 256 = 76.8, so ${wanted}, and ${wanted} / 256 = ${wanted / 256}`, "only 256 steps"];
     },
     4.6: () => [],
 
@@ -334,10 +352,15 @@ function make_claims({ ask, frame, lens, half }) {
     5.2: () => {
       const weights = flip_of_shader("weights", "figures");
       assert.ok(weights < 0.01 && flip_of_shader("gather", "figures") > 0.01);
-      return ["share 1 / r²", "below 0.010", `has ${weights.toFixed(3)}`];
+      return ["share 1 / r²", "with 1 if r is below 1", "below 0.010", `has ${weights.toFixed(3)}`];
     },
-    5.3: () => [`${flip_of_shader("weights", "near-fence").toFixed(3)} for the second example, ` +
-                `${flip_of_shader("gather", "near-fence").toFixed(3)} for the first`],
+    5.3: () => {
+      // A smaller filter, which is quicker, cuts no circle of the fence.
+      const { max_coc_px } = /max=(?<max_coc_px>\d+)/.exec(kSteps["5.3"].state).groups;
+      assert.ok(frame(kFence).largest_coc_px < Number(max_coc_px));
+      return [`${flip_of_shader("weights", "near-fence").toFixed(3)} for the second example, ` +
+                `${flip_of_shader("gather", "near-fence").toFixed(3)} for the first`];
+    },
     5.4: ({ text }) => {
       const line = /^ {4}(if \(texel.*)$/m.exec(text)[1];
       const change = (shader) => shader.replace(/if \(texel\.a > depth_m\).*/, line);
@@ -372,11 +395,12 @@ async function main() {
   const ask = await start_module();
   const lens = await module_of("lens/lens.js");
   const half = await module_of("lessons/half.js");
-  const { kSteps } = await module_of("lessons/steps.js");
+  const steps_of_page = await module_of("lessons/steps.js");
+  const { kSteps } = steps_of_page;
   const { read_lessons } = await module_of("lessons/text.js");
   const chapters = read_lessons(fs.readFileSync(path.join(top, "docs/teaching.md"), "utf8"));
   const steps = chapters.flatMap((chapter) => chapter.steps);
-  const claims = make_claims({ ask, frame: make_frames(ask), lens, half });
+  const claims = make_claims({ ask, frame: make_frames(ask), lens, half, steps: steps_of_page });
   const tests = [["the steps of the page and of the text are the same", () => {
     const keys = steps.map(({ key }) => key);
     assert.deepStrictEqual(Object.keys(kSteps).sort(), [...keys].sort());
@@ -396,6 +420,10 @@ async function main() {
   tests.push(["the teacher's disc of diffraction", () => {
     const questions = chapters.find(({ title }) => title === "Questions for the class").lines.join("\n");
     assert.match(questions, new RegExp(`2\\.44 · 0\\.55 µm · 22 = ${(2.44 * 0.55 * 22).toFixed(1)} µm`));
+  }]);
+  tests.push(["numbers with a point and with a comma are read alike", () => {
+    const read = ["0.32", " 0,32 ", "-1", "", "x"].map((value) => half.number_in({ value }));
+    assert.deepStrictEqual(read, [0.32, 0.32, -1, NaN, NaN]);
   }]);
   for (const [claim, test] of tests) {
     if (process.env.ONLY && !claim.includes(process.env.ONLY)) continue;

@@ -47,11 +47,16 @@ module.exports = ({ test, drawn, set_number, folder, single_file, ...of }) => {
   };
   const shader = (name) => fs.readFileSync(path.join(kLesson, `${name}.frag`), "utf8");
 
+  const not_found = async (page) => {
+    await page.waitForTimeout(700);  // twice the time between two looks
+    assert.strictEqual(await of.text_of(page, "step-state"), "Not found yet.");
+  };
+
   /** What the student does in each step, by its number. */
   const kDeeds = {
     1.1: (page) => click(page, 0.28, 0.36),
     1.2: (page) => set_number(page, "focus-part", 0.84),
-    1.3: answer(0.32),
+    1.3: answer("0,32"),
     1.4: async (page) => {
       await tab(page, "lens");
       await page.locator("#object-handle").focus();
@@ -66,6 +71,7 @@ module.exports = ({ test, drawn, set_number, folder, single_file, ...of }) => {
     1.7: (page) => set_number(page, "focus-part", 4.6),
     1.8: async (page) => {
       await page.locator("#sensor").selectOption("phone");
+      await not_found(page);
       await set_number(page, "focal-length-part", 15.8);
     },
     2.1: async (page) => {
@@ -74,7 +80,12 @@ module.exports = ({ test, drawn, set_number, folder, single_file, ...of }) => {
     },
     2.2: (page) => set_number(page, "max-coc-part", 57),
     2.3: method("one-pass"),
-    2.4: method("disc-layers"),
+    2.4: async (page) => {
+      await method("pinhole")(page);
+      await page.waitForFunction(() => document.getElementById("step-watch").textContent === "FLIP 0");
+      await not_found(page);
+      await method("disc-layers")(page);
+    },
     2.5: method("layers"),
     2.6: method("accumulation"),
     3.1: points(64),
@@ -98,10 +109,13 @@ module.exports = ({ test, drawn, set_number, folder, single_file, ...of }) => {
     },
     5.2: (page) => write(page, shader("weights")),
     5.3: async (page) => {
-      await page.locator("#scene").selectOption("near-fence");
-      await drawn(page);
       await tab(page, "shader");
-      await page.locator("#shader-example").selectOption("weights");
+      const mine = await page.locator("#shader-text").inputValue();
+      assert.strictEqual(await page.locator("#shader-example").inputValue(), "own");
+      await page.locator("#shader-example").selectOption("gather");
+      await page.waitForFunction((text) => document.getElementById("shader-text").value !== text, mine);
+      await page.locator("#shader-example").selectOption("own");
+      assert.strictEqual(await page.locator("#shader-text").inputValue(), mine);
       await page.locator("#shader-example").selectOption("gather");
     },
     5.4: async (page) => {
@@ -137,8 +151,7 @@ module.exports = ({ test, drawn, set_number, folder, single_file, ...of }) => {
         await drawn(page);
       }
       if (kDeeds[key]) {
-        await page.waitForTimeout(700);  // twice the time between two looks
-        assert.strictEqual(await of.text_of(page, "step-state"), "Not found yet.", `${key}: set up`);
+        await not_found(page).catch((error) => { throw new Error(`${key}: set up: ${error.message}`); });
         await kDeeds[key](page);
       }
       await state_is(page, "✓ Found.").catch(() => { throw new Error(`${key} is never found`); });
@@ -152,6 +165,17 @@ module.exports = ({ test, drawn, set_number, folder, single_file, ...of }) => {
   for (const number of has("softfocus-compiler.wasm") ? [1, 2, 3, 4, 5] : [1, 2, 3, 4]) {
     test(`lesson ${number} can be gone through, and each step knows when it is found`, (page) => walk(page, number));
   }
+
+  test("what another scene shows does not find a step", async (page) => {
+    await set_number(page, "max-coc-part", 21);  // cuts no circle of Figures, and is less than a pixel too large
+    await drawn(page);
+    await tab(page, "lessons");
+    await page.waitForSelector("#lesson-step:not([hidden])");
+    await page.locator("#lesson").selectOption("2.1");
+    await page.locator("#step-list button").nth(1).click();
+    await page.waitForFunction(() => document.getElementById("step-watch").textContent === "no circle is cut");
+    await not_found(page);
+  });
 
   if (single_file) {
     test("the page in one file has the lessons", async (page) => {

@@ -37,25 +37,41 @@ export function weight_of_bits(fraction, bits) {
 
 const words_of = (value) => (Number.isFinite(value) ? String(value) : value > 0 ? "infinity" : "−infinity");
 
-/** Two fields and what becomes of their numbers; `numbers()` tells what stands there. */
+/** The number in a field, with a point or a comma; NaN if there is none. */
+export function number_in({ value }) {
+  const text = value.trim().replace(",", ".");
+  return text === "" ? NaN : Number(text);
+}
+
+/**
+ * Two fields and what becomes of their numbers. `choose(kind)` shows one of them, "number" or
+ * "weight"; `numbers()` tells what stands there.
+ */
 export function start_half() {
   const value = by_id("half-value");
   const weight = by_id("half-weight");
   const rows = by_id("half-rows");
-  const numbers = () => ({ value: value.valueAsNumber, weight: weight.valueAsNumber });
+  let kind = "number";
+  const numbers = () => ({ value: number_in(value), weight: number_in(weight) });
   function show() {
     const now = numbers();
     const row = (...cells) => element("tr", {}, element("th", { scope: "row" }, cells[0]),
                                       ...cells.slice(1).map((cell) => element("td", {}, cell)));
     const known = (number, from) => (Number.isFinite(number) ? words_of(from(number)) : "–");
-    rows.replaceChildren(
-        row("to the nearest half, ties to even", known(now.value, nearest_half)),
-        row("cut to a half", known(now.value, cut_half)),
-        row("step from half to half there", known(now.value, half_step)),
-        row("the weight in 8 bits", known(now.weight, (number) => weight_of_bits(number, 8))),
-        row("256ths of it", known(now.weight, (number) => 256 * weight_of_bits(number, 8))));
+    rows.replaceChildren(...(kind === "number" ? [
+      row("to the nearest half, ties to even", known(now.value, nearest_half)),
+      row("cut to a half", known(now.value, cut_half)),
+      row("step from half to half there", known(now.value, half_step)),
+    ] : [row("the weight in 8 bits", known(now.weight, (number) => weight_of_bits(number, 8)))]));
+  }
+  function choose(wanted) {
+    kind = wanted;
+    for (const [field, of] of [[value, "number"], [weight, "weight"]]) {
+      for (const node of [field, ...field.labels]) node.hidden = of !== kind;
+    }
+    show();
   }
   for (const field of [value, weight]) field.addEventListener("input", show);
-  show();
-  return { numbers };
+  choose(kind);
+  return { numbers, choose };
 }

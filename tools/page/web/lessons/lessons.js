@@ -4,7 +4,7 @@
 
 import { announce, by_id, element } from "../dom.js";
 import { read_link } from "../link.js";
-import { start_half } from "./half.js";
+import { number_in, start_half } from "./half.js";
 import { kSteps } from "./steps.js";
 import { blocks_of, inline_nodes, read_lessons } from "./text.js";
 
@@ -18,6 +18,12 @@ function stored() {
   } catch {
     return { at: "", found: new Set() };  // refused, or never begun
   }
+}
+
+/** Whether the scene or the case of a link's fragment is open. */
+function is_open(fragment, { scene, failure }) {
+  const words = read_link(fragment);
+  return words.has("case") ? failure?.name === words.get("case") : !failure && scene === words.get("scene");
 }
 
 /** Whether an element is on the screen, and nothing over it. */
@@ -108,6 +114,7 @@ export function start_lessons({ world, set_up, want_truth, tabs }) {
       by_id("step-fold").replaceChildren(...folded);
       by_id("step-set").hidden = !rule.state;
       by_id("half-part").hidden = !rule.half;
+      if (rule.half) half.choose(rule.half);
       by_id("answer-part").hidden = !rule.answer;
       by_id("answer-unit").textContent = rule.answer?.unit ?? "";
       by_id("step-back").disabled = key === keys()[0];
@@ -129,9 +136,9 @@ export function start_lessons({ world, set_up, want_truth, tabs }) {
   }
 
   function is_found(rule, now) {
-    if (!rule.answer) return rule.found?.(now);
+    if (!rule.answer) return (!rule.state || rule.anywhere || is_open(rule.state, now.state)) && rule.found?.(now);
     const wanted = rule.answer.value(now);
-    return Math.abs(answer.valueAsNumber - wanted) <= rule.answer.part * Math.abs(wanted);
+    return Math.abs(number_in(answer) - wanted) <= rule.answer.part * Math.abs(wanted);
   }
 
   function look() {

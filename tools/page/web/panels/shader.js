@@ -11,8 +11,8 @@ const kPauseMs = 600;  // of typing, before the text is compiled
 
 // Pipelines beside the page in lesson/; the shader of the last one is the module's own.
 const kExamples = [
-  { name: "gather", words: "Lesson 1: a gather that leaks" },
-  { name: "weights", words: "Lesson 2: weights that mend it" },
+  { name: "gather", words: "First: a gather that leaks" },
+  { name: "weights", words: "Second: weights that mend it" },
   { name: "two_pass", words: "two-pass" },
 ];
 
@@ -97,14 +97,30 @@ export function start_shader({ engine, store, settled, want_truth }) {
     show_size();
   }
 
+  let given = "";  // the text of the last example
+  let own = null;  // what the visitor made of it, before another one took its place
+
+  /** A text that no example has is one more to begin with, so that each of them can be chosen again. */
+  function show_own() {
+    if (text.value === "" || text.value === given) return;
+    if (example.lastChild.value !== "own") example.append(element("option", { value: "own" }, "Your text"));
+    example.value = "own";
+  }
+
   async function begin_with(name) {
+    const now = { text: text.value, passes: passes.value };
+    const mine = own ?? now;
+    if (text.value !== given) own = now;
     try {
-      if (name !== "two_pass") {
+      if (name === "own") {
+        load(mine);
+      } else if (name !== "two_pass") {
         load({ text: await fetched(`${name}.frag`), passes: await fetched(`${name}.toml`) });
       } else {
         const { reply } = await engine.ask({ do: "shader_text", name: "two_pass.frag" }, kAsked);
         load({ text: reply.text, passes: await fetched("two_pass.toml") });
       }
+      given = text.value;
       await run(false);
     } catch (error) {
       show_fault(error.message, false);
@@ -143,6 +159,7 @@ export function start_shader({ engine, store, settled, want_truth }) {
   for (const box of [text, passes]) {
     box.addEventListener("input", () => {
       show_size();
+      show_own();
       clearTimeout(timer);
       timer = setTimeout(() => run(false), kPauseMs);
     });
@@ -165,6 +182,7 @@ export function start_shader({ engine, store, settled, want_truth }) {
     /** Compiles a link's text. Resolves to the method's name, or to null. */
     restore(shader) {
       load(shader);
+      show_own();
       return compile(false);
     },
     /** In a new module, the same text once more. */
