@@ -97,9 +97,9 @@ function worker_parts() {
       "\\nself.createSoftfocus = createSoftfocus; }, async wasm() { const text = atob(\\"" + wasm +
       "\\"); const bytes = new Uint8Array(text.length);" +
       " for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);" +
-      " if (typeof DecompressionStream === \"undefined\") throw new Error(" +
-      "\"this file needs a browser from 2023 or later; the page on a server does without\");" +
-      " const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream(\"deflate\"));" +
+      " if (typeof DecompressionStream === \\"undefined\\") throw new Error(" +
+      "\\"this file needs a browser from 2023 or later; the page on a server does without\\");" +
+      " const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream(\\"deflate\\"));" +
       " return new Response(stream).arrayBuffer(); }};\\n";
   const blob = new Blob([parts, text_of("softfocus-worker")], { type: "text/javascript" });
   globalThis.softfocus_worker = URL.createObjectURL(blob);

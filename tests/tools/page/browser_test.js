@@ -1066,6 +1066,10 @@ lacks("without WebAssembly's exceptions it runs, and says so", () => {
   const validate = WebAssembly.validate;
   WebAssembly.validate = (bytes) => bytes.length !== 28 && validate(bytes);
 }, "plain", /exceptions/);
+lacks("without WebAssembly's atomics it runs, and says so", () => {
+  const validate = WebAssembly.validate;
+  WebAssembly.validate = (bytes) => bytes.length !== 37 && validate(bytes);
+}, "plain", /atomics/);
 
 test("without WebGL2 the GPU's panel says so, and the rest works", async (page) => {
   await page.locator("#tab-gpu").click();

@@ -108,8 +108,8 @@ let compiler = null;
 /** GLSL's compiler, loaded for the first shader. */
 async function loaded_compiler() {
   if (compiler) return compiler;
-  if (!can_run("exceptions") || !can_run("simd")) {
-    throw new Error("the compiler needs WebAssembly's exceptions and SIMD, which this browser has not");
+  if (!Object.keys(kProbes).every(can_run)) {
+    throw new Error("the compiler needs WebAssembly's exceptions, SIMD and atomics, which this browser has not");
   }
   const response = self.softfocus_parts ? null : await fetch("softfocus-compiler.wasm");
   if (!response?.ok) throw new Error("this page was built without GLSL's compiler");
