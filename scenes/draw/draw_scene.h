@@ -88,8 +88,8 @@ struct StandIns {
       lay;
 };
 
-/// How often a pixel reads its surface's texture (texture_read_places()), if edges are found from so
-/// many samples. Half as many reads as samples: more would cost more than they bring.
+/// How often a pixel reads its surface's texture (texture_read_places()), if edges are found from
+/// so many samples. Half as many reads as samples: more would cost more than they bring.
 constexpr int texture_reads_of(int samples) { return samples == 1 ? 1 : samples / 2; }
 
 /// A scene made ready for many frames: decoded textures, and memory to use again.
