@@ -93,12 +93,23 @@ Image found_truth(Page& page, const ShownFrame& shown) {
   return mean_of(*page.truth, shot_of_truth(page, shown), *page.pool);
 }
 
-void show_truth(Page& page, const std::string& what, const Image& truth, const Image& picture) {
+/// `numbers`: the map's in place of its colours.
+void show_truth(Page& page, const std::string& what, bool numbers, const Image& truth,
+                const Image& picture) {
   if (what == "truth") {
     show_on_screen(truth, page.pixels, *page.pool);
   } else if (what == "error") {
     const PixelMap map = flip_map(truth, picture, clamped_tone(), *page.pool);
-    show_on_screen(heat_picture(map), page.pixels, *page.pool);
+    if (numbers) {
+      put_numbers(
+          map.width, map.height,
+          [&](int x, int y) {
+            return static_cast<float>(row(map, y)[static_cast<std::size_t>(x)]);
+          },
+          page.pixels);
+    } else {
+      show_on_screen(heat_picture(map), page.pixels, *page.pool);
+    }
   } else {
     throw UsageError("show '" + what + "': there are truth, error");
   }
@@ -141,7 +152,10 @@ Json answer_truth(Page& page, const Json& request) {
     reply["hash"] = hash_text(hash_image(truth));
   }
   if (const Json* show = request.find("show")) {
-    show_truth(page, show->text(), truth, shown.picture);
+    const Json* numbers = given(request, "numbers");
+    const bool wants_numbers = numbers != nullptr && numbers->boolean();
+    show_truth(page, show->text(), wants_numbers, truth, shown.picture);
+    reply["numbers"] = wants_numbers && show->text() == "error";
     reply["width"] = truth.width;
     reply["height"] = truth.height;
   }

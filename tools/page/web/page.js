@@ -91,9 +91,9 @@ function show_shadow_counts({ shadows }) {
 const frames = make_frames({
   engine, store,
   moving: () => playing,
-  paint: (side, reply, pixels) => {
+  paint: (side, reply, pixels, { show }, preview) => {
     by_id("over").hidden = true;
-    view.paint(side, reply, pixels);
+    view.paint(side, show, reply, pixels, preview);
   },
   on_frame,
   on_error: (line) => {
@@ -132,7 +132,7 @@ const truth = make_truth({
     const { show } = store.get();
     return show === "truth" || show === "error" ? show : null;
   },
-  paint: (reply, pixels) => view.paint_over(store.get(), reply, pixels),
+  paint: (kind, reply, pixels) => view.paint_over(store.get(), kind, reply, pixels),
   on_error: show_error,
 });
 let methods_table = { renew() {} };
@@ -475,7 +475,8 @@ async function point_at(place) {
   const metres = reply.depth_m === null ? "∞" : metres_text(reply.depth_m);
   const depth = reply.has_depth ? ` · depth ${metres}` : "";
   const circle = reply.coc_radius_px === null || reply.coc_radius_px === undefined
-      ? "" : ` · circle ${three_digits(reply.coc_radius_px)} px`;
+      ? "" : ` · circle’s radius ${three_digits(Math.abs(reply.coc_radius_px))} px, ` +
+             `${reply.coc_radius_px < 0 ? "before" : "behind"} the focus`;
   by_id("pixel").textContent =
       `${x}, ${y}${depth}${circle} · light ${reply.colour_linear.map(three_digits).join(" ")}`;
 }
@@ -492,7 +493,7 @@ start_keys({
   camera_key: pointer.key,
   commands: [
     { keys: ["b"], words: "Depth of field on and off", run: () => store.change_side({ dof: !store.side().dof }) },
-    { keys: ["m"], words: "Map of the circles: black is sharp", run: () => toggle_show("coc") },
+    { keys: ["m"], words: "Map of the circles: black is sharp, orange before the focus, blue behind", run: () => toggle_show("coc") },
     { keys: ["/"], words: "Wireframe", run: () => { if (scene_look()) toggle_show("wireframe"); } },
     { keys: ["j"], words: "Next kind of shadows", run: () => controls.next_shadows() },
     { keys: ["i"], words: "Dragging and the arrows move the light, or the camera", run: () => by_id("light-drag").click() },

@@ -111,6 +111,7 @@ export function frame_request(state, side, preview, hash = true) {
     coc_scale: side.coc_scale,
     samples: side.samples,
     preview,
+    numbers: ["coc", "depth"].includes(state.show),
     hash: hash && preview === 1,
   };
   if (state.camera) request.camera = state.camera;

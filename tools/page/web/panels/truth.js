@@ -9,7 +9,7 @@ const kTurnMs = 200;     // of one request, so that input and frames stay quick
 const kShownEvery = 16;  // views between two pictures of the growing truth
 
 /**
- * `paint(reply, pixels)` shows the truth or the error; `shown()` is "truth", "error" or null.
+ * `paint(kind, reply, pixels)` shows the truth or the error; `shown()` is "truth", "error" or null.
  * `settled()`: whether the whole picture of the present state is there; `hindrance()`: why what is
  * shown has no truth, or null.
  */
@@ -47,11 +47,11 @@ export function make_truth({ engine, settled, hindrance, shown, paint, on_error 
     const kind = shown();
     if (!kind || !last) return;
     if (!force && last.samples < painted_at + kShownEvery && !last.done) return;
-    const { reply, pixels } = await engine.ask({ do: "truth", show: kind }, kAsked);
+    const { reply, pixels } = await engine.ask({ do: "truth", show: kind, numbers: true }, kAsked);
     if (reply.error) on_error(reply.error);
     else if (!reply.cancelled && pixels && shown() === kind && settled()) {
       painted_at = reply.samples ?? last.samples;
-      paint(reply, pixels);
+      paint(kind, reply, pixels);
     }
   }
 
