@@ -125,6 +125,20 @@ double flip_of_shown(ShownFrame& shown, const Image& truth, int samples, bool do
   return known->flip;
 }
 
+/// Whether the picture of a case holds, by the case's own measure; null where there is none of one
+/// frame.
+Json verdict_of(const Page& page, const ShownFrame& shown, const Image& truth) {
+  const std::optional<StressTrial>& trial = shown.drawn->trial;
+  if (!trial || trial->frames.size() != 1 || !page.opened->stress_case) return nullptr;
+  const StressCase& of = *page.opened->stress_case;
+  const double value =
+      of.measure({*trial, page.opened->severity, std::span{&truth, 1}, std::span{&shown.picture, 1},
+                  *page.pool});
+  return {{"value", number_or_null(value)}, {"limit", of.limit},
+          {"unit", of.unit},                {"measured", of.measured},
+          {"why", of.why_limit},            {"holds", value <= of.limit}};
+}
+
 }  // namespace
 
 Json answer_truth(Page& page, const Json& request) {
@@ -148,6 +162,7 @@ Json answer_truth(Page& page, const Json& request) {
              {"half_set_rms", rms ? Json(*rms) : Json(nullptr)},
              {"flip_mean", flip_of_shown(*page.shown, truth, samples, done, *page.pool)},
              {"done", done}};
+  if (done) reply["verdict"] = verdict_of(page, *page.shown, truth);
   if (const Json* hash = request.find("hash"); hash != nullptr && hash->boolean()) {
     reply["hash"] = hash_text(hash_image(truth));
   }

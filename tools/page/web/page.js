@@ -21,7 +21,7 @@ import { locked_fov_degrees } from "./lens/photographer.js";
 import { start_pointer } from "./pointer.js";
 import { save_report, shown_ms } from "./panels/report.js";
 import { start_shader } from "./panels/shader.js";
-import { first_state, kMaps, make_store, parameters, set_parameters, with_picture, with_scene } from "./state.js";
+import { first_state, kFirstScene, kMaps, kThesisScenes, make_store, parameters, set_parameters, with_picture, with_scene } from "./state.js";
 import { start_tabs } from "./tabs.js";
 import { start_theme } from "./theme.js";
 import { start_tips } from "./tips.js";
@@ -133,10 +133,19 @@ const truth = make_truth({
     return show === "truth" || show === "error" ? show : null;
   },
   paint: (kind, reply, pixels) => view.paint_over(store.get(), kind, reply, pixels),
+  on_done: show_answer,
   on_error: show_error,
 });
+
+/** A failure case's known answer, beside its picture. */
+async function show_answer(done) {
+  const has_answer = Boolean(done && store.get().failure);
+  const answer = has_answer ? await engine.ask({ do: "truth", show: "truth" }, kAsked) : null;
+  const is_here = answer?.pixels && frames.settled() && truth.numbers() === done;
+  cases.show_answer(is_here ? answer : null);
+}
 let methods_table = { renew() {} };
-let cases = { show() {} };
+let cases = { show() {}, show_answer() {} };
 let picture = { show() {} };
 const gpu = start_gpu({ engine, store, settled: frames.settled });
 const shader = start_shader({
@@ -209,7 +218,8 @@ store.listen((state, before) => {
   cases.show(state.failure);
   picture.show(state.picture, opened?.picture);
   keep_link();
-  const measured = state.show === "truth" || state.show === "error";
+  const measured = state.show === "truth" || state.show === "error" ||
+                   (state.failure && state.failure !== before.failure);
   if (measured && !truth.wanted()) truth.want(true);
   const changed = picture_key(state) !== picture_key(before) || state.editing !== before.editing;
   if (changed || state.show !== before.show) {
@@ -311,7 +321,7 @@ async function go_back(line) {
   const { scene, failure } = what;
   if (before) await open(before, { state: before, read: own.get(before.scene)?.read });
   else if (words?.size) await open({ scene, failure }, { words: new Map() });
-  else if (scene !== "figures") await open({ scene: "figures" }, { words: new Map() });
+  else if (scene !== kFirstScene) await open({ scene: kFirstScene }, { words: new Map() });
   show_error(before ? `${line}; what was open before is here again` : line);
 }
 
@@ -598,7 +608,7 @@ async function open_link(fragment) {
     if (done || opened) return;
   }
   let line = by_id("error-text").textContent;
-  if (!opened) await open({ scene: "figures" }, { words: new Map() });
+  if (!opened) await open({ scene: kFirstScene }, { words: new Map() });
   if (path && !what) {
     own_link = { path, words, wanted };
     line = `the link is of your own file ${words.get("own")}, which is not here: drop it on the page again, ` +
@@ -623,9 +633,13 @@ async function start(ready) {
   by_id("version").textContent = `softfocus ${about.version}, ${about.isa}, ` +
                                  `${about.threads === 1 ? "one thread" : `${about.threads} threads`}.`;
   by_id("build").textContent = `Build: ${build}.${lacks}`;
-  const options = listing.scenes.map(({ name, title }) => element("option", { value: name }, title ?? name));
+  const group = (label, is_here) => element("optgroup", { label }, ...listing.scenes
+      .filter(({ name }) => is_here(name)).map(({ name, title }) => element("option", { value: name }, title ?? name)));
+  const is_of_thesis = (name) => kThesisScenes.includes(name);
   by_id("scene").replaceChildren(element("option", { value: "", hidden: "" }, "Failure case"),
-                                 ...options, element("option", { value: "random" }, "Random…"));
+                                 group("The thesis’s scenes", is_of_thesis),
+                                 group("Other scenes", (name) => !is_of_thesis(name)),
+                                 element("option", { value: "random" }, "Random…"));
   by_id("scene").disabled = false;
   controls.set_methods(listing.methods);
   controls.set_effects(listing.effects ?? []);

@@ -100,16 +100,16 @@ export const kSteps = {
          found: ({ state, side, ...world }) => state.scene === "near-fence" && side.method === "accumulation" &&
                                                side.samples === 2 && is_below(world, 0.153) },
 
-  4.1: { state: "scene=figures", watch: ({ frame }) => frame.hash ?? "",
+  4.1: { state: "scene=figures&method=two-pass", watch: ({ frame }) => frame.hash ?? "",
          found: ({ frame }) => frame.hash === "0x6817b540da3a8207" },
-  4.2: { state: "scene=figures", watch: ({ frame }) => frame.hash ?? "",
+  4.2: { state: "scene=figures&method=two-pass", watch: ({ frame }) => frame.hash ?? "",
          found: ({ state, side, frame }) => state.scene === "figures" && side.focus.m === 1.0001 && Boolean(frame.hash) },
   4.3: { half: true, found: ({ half }) => half.value === 2049 },
   4.4: { half: true,
          found: ({ half: { value } }) => value > 2048 && value < 65520 && Number.isInteger(value) &&
                                          nearest_half(value) !== cut_half(value) },
   4.5: { half: true, answer: { value: () => 256 * weight_of_bits(0.3, 8), part: 0, unit: "256ths" } },
-  4.6: { state: "scene=figures", found: () => by_id("gpu-differences").textContent !== "" },
+  4.6: { state: "scene=figures&method=two-pass", found: () => by_id("gpu-differences").textContent !== "" },
 
   5.1: { state: "scene=figures", watch: flip_text,
          found: ({ state, side, truth }) => state.show === "error" && is_own_method(side.method) && Boolean(truth) },
