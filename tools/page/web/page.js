@@ -11,6 +11,7 @@ import { make_frames, picture_key } from "./frames.js";
 import { start_gpu } from "./panels/gpu.js";
 import { show_hash, start_hashes } from "./panels/hashes.js";
 import { start_keys } from "./keys.js";
+import { start_kept } from "./panels/kept.js";
 import { lens_numbers, start_lens_view } from "./lens/lens_view.js";
 import { start_lessons } from "./lessons/lessons.js";
 import { link_of, read_link, shader_of, state_to_open, take_shader, with_link } from "./link.js";
@@ -474,6 +475,7 @@ async function copy_link() {
 let asking_pixel = false;
 async function point_at(place) {
   if (!place) by_id("pixel").textContent = "\u00a0";
+  if (place && by_id("focus-follow").checked) focus_at(place);
   if (!place || asking_pixel || !frames.settled() || playing) return;
   asking_pixel = true;
   const [width, height] = [last_reply.width, last_reply.height];
@@ -491,9 +493,9 @@ async function point_at(place) {
       `${x}, ${y}${depth}${circle} · light ${reply.colour_linear.map(three_digits).join(" ")}`;
 }
 
+const focus_at = (at) => store.change_side({ focus: { at: at.map((part) => Number(part.toFixed(4))) } });
 const pointer = start_pointer(by_id("picture"), {
-  camera, move, turn_light, point_at,
-  focus_at: (at) => store.change_side({ focus: { at: at.map((part) => Number(part.toFixed(4))) } }),
+  camera, move, turn_light, point_at, focus_at,
   focus_place: () => store.side().focus.at ?? null,
 });
 
@@ -581,6 +583,13 @@ document.addEventListener("visibilitychange", () => {
   engine.pause(document.hidden || quit);
 });
 setInterval(() => { by_id("busy").hidden = frames.busy_for_ms() < 400; }, 200);
+start_kept({
+  link: () => link_of(store.get()),
+  words: () => `${store.side().dof ? store.side().method : "sharp"}, ${three_digits(store.side().focal_length_mm)} mm, ` +
+               `f/${three_digits(store.side().f_number)}, ${metres_text(focus_m())}`,
+  canvas: () => by_id(store.get().editing === 1 ? "canvas-b" : "canvas-a"),
+  open: (link) => open_link(link),
+});
 start_tips();
 start_theme();
 start_hashes({ engine });
@@ -633,12 +642,12 @@ async function start(ready) {
   by_id("version").textContent = `softfocus ${about.version}, ${about.isa}, ` +
                                  `${about.threads === 1 ? "one thread" : `${about.threads} threads`}.`;
   by_id("build").textContent = `Build: ${build}.${lacks}`;
-  const group = (label, is_here) => element("optgroup", { label }, ...listing.scenes
-      .filter(({ name }) => is_here(name)).map(({ name, title }) => element("option", { value: name }, title ?? name)));
-  const is_of_thesis = (name) => kThesisScenes.includes(name);
+  const group = (label, scenes) => element("optgroup", { label }, ...scenes.map(
+      ({ name, title }) => element("option", { value: name }, title ?? name)));
+  const of_thesis = kThesisScenes.map((name) => listing.scenes.find((scene) => scene.name === name)).filter(Boolean);
   by_id("scene").replaceChildren(element("option", { value: "", hidden: "" }, "Failure case"),
-                                 group("The thesis’s scenes", is_of_thesis),
-                                 group("Other scenes", (name) => !is_of_thesis(name)),
+                                 group("The thesis’s scenes", of_thesis),
+                                 group("Other scenes", listing.scenes.filter((scene) => !of_thesis.includes(scene))),
                                  element("option", { value: "random" }, "Random…"));
   by_id("scene").disabled = false;
   controls.set_methods(listing.methods);
