@@ -792,7 +792,7 @@ const luminances = (page) => page.evaluate(() => {
 test("the circles' map has two hues, before and behind the focus, and a legend", async (page) => {
   await page.locator("#coc-map").check({ force: true });
   await drawn(page);
-  assert.match(await text_of(page, "legend"), /px: orange before the focus, blue behind, black sharp.*−8.*0.*8/);
+  assert.match(await text_of(page, "legend"), /px: orange before focus, blue behind.*−8.*0.*8/);
   const box = await page.locator("#picture").boundingBox();
   const seen = new Set();
   for (const [x, y] of [[0.16, 0.4], [0.76, 0.38], [0.12, 0.72], [0.8, 0.85]]) {

@@ -94,7 +94,7 @@ function packed([red, green, blue]) {
 }
 
 const kTitles = {
-  coc: "Radius of the circle, px: orange before the focus, blue behind, black sharp",
+  coc: "Radius of the circle, px: orange before focus, blue behind",
   depth: "Depth, in equal steps of its logarithm",
   error: "FLIP of each pixel: 0 is equal",
 };

@@ -219,17 +219,18 @@ store.listen((state, before) => {
   cases.show(state.failure);
   picture.show(state.picture, opened?.picture);
   keep_link();
-  const measured = state.show === "truth" || state.show === "error" ||
-                   (state.failure && state.failure !== before.failure);
-  if (measured && !truth.wanted()) truth.want(true);
   const changed = picture_key(state) !== picture_key(before) || state.editing !== before.editing;
   if (changed || state.show !== before.show) {
+    frames.want(state.time === before.time && state.show === before.show);
     if (changed) {
       truth.renew();
       methods_table.renew();
     }
-    frames.want(state.time === before.time && state.show === before.show);
   }
+  // After the frame, for the one before may be a map, which has no truth.
+  const measured = state.show === "truth" || state.show === "error" ||
+                   (state.failure && state.failure !== before.failure);
+  if (measured && !truth.wanted()) truth.want(true);
 });
 
 function keep_known({ focus_m: focus, max_coc_px: radius }, side) {
@@ -585,8 +586,8 @@ document.addEventListener("visibilitychange", () => {
 setInterval(() => { by_id("busy").hidden = frames.busy_for_ms() < 400; }, 200);
 start_kept({
   link: () => link_of(store.get()),
-  words: () => `${store.side().dof ? store.side().method : "sharp"}, ${three_digits(store.side().focal_length_mm)} mm, ` +
-               `f/${three_digits(store.side().f_number)}, ${metres_text(focus_m())}`,
+  words: () => [store.side().dof ? store.side().method : "sharp",
+                `f/${three_digits(store.side().f_number)}, ${metres_text(focus_m())}`],
   canvas: () => by_id(store.get().editing === 1 ? "canvas-b" : "canvas-a"),
   open: (link) => open_link(link),
 });

@@ -109,7 +109,8 @@ export function make_lens_diagram({ on_object, on_focus }) {
     const far_x = x_of(far_m);
     const shape = [
       svg_element("path", { class: "seen", d: `M${lens_x()} ${middle}L22 ${middle - room}V${middle + room}Z` }),
-      svg_element("rect", { x: far_x, y: middle - room, width: Math.max(x_of(near_m) - far_x, 1), height: 2 * room, class: "sharp" }),
+      svg_element("rect", { x: far_x, y: middle - room, width: Math.max(x_of(near_m) - far_x, 1), height: 2 * room,
+                            class: "sharp" }),
       line(2, middle, width - 2, middle, "axis"), line(22, base, lens_x(), base, "bar"), ...ticks(base)];
     if (Number.isFinite(hyperfocal_m)) {
       const x = x_of(hyperfocal_m);
@@ -165,12 +166,14 @@ export function make_lens_diagram({ on_object, on_focus }) {
         `M${enlarged(film_x - reach_of, at(rim, 1, v, film_x - reach_of))}` +
         `L${enlarged(film_x + reach_of, at(rim, 1, v, film_x + reach_of))}`)).join("");
     const glass = svg_element("g", { "clip-path": "url(#magnified)" },
-      svg_element("rect", { x: glass_x - kMagnifier, y: middle - kMagnifier, width: 2 * kMagnifier, height: 2 * kMagnifier, class: "inside" }),
+      svg_element("rect", { x: glass_x - kMagnifier, y: middle - kMagnifier, width: 2 * kMagnifier,
+                            height: 2 * kMagnifier, class: "inside" }),
       line(glass_x, middle - kMagnifier, glass_x, middle + kMagnifier, "film"),
       svg_element("path", { class: "ray object", d: near_rays }),
       line(glass_x, middle - spread / 2 * power, glass_x, middle + spread / 2 * power, "circle"));
     if (Math.abs(image_x - film_x) < reach_of) {
-      glass.append(svg_element("circle", { cx: glass_x + (image_x - film_x) * power, cy: middle + off * (v / v0 - 1) * power, r: 3.5, class: "dot" }));
+      glass.append(svg_element("circle", { cx: glass_x + (image_x - film_x) * power,
+                                           cy: middle + off * (v / v0 - 1) * power, r: 3.5, class: "dot" }));
     }
     drawings.camera.replaceChildren(
       svg_element("clipPath", { id: "magnified" }, svg_element("circle", { cx: glass_x, cy: middle, r: kMagnifier })),
@@ -179,14 +182,15 @@ export function make_lens_diagram({ on_object, on_focus }) {
       svg_element("path", { class: "ray object", d: pair(1, v, end) }),
       line(film_x, middle - height / 2 / per_pixel, film_x, middle + height / 2 / per_pixel, "film"),
       line(film_x, on_film - spread / 2, film_x, on_film + spread / 2, "circle"),
-      lens_shape(x0, middle, half),
-      svg_element("path", { class: "hyper", d: `M${film_x} ${on_film - 5}L${glass_x} ${middle - kMagnifier}M${film_x} ${on_film + 5}L${glass_x} ${middle + kMagnifier}` }),
+      lens_shape(x0, middle, half), text(film_x, 10, `film ${millimetres_text(height)}`, "middle"),
+      svg_element("path", { class: "hyper", d: `M${film_x} ${on_film - 5}L${glass_x} ${middle - kMagnifier}` +
+                                               `M${film_x} ${on_film + 5}L${glass_x} ${middle + kMagnifier}` }),
       svg_element("circle", { cx: film_x, cy: on_film, r: 5, class: "lens-edge" }),
       glass, svg_element("circle", { cx: glass_x, cy: middle, r: kMagnifier, class: "lens-edge" }),
       text(glass_x, kHeight - 4, `× ${three_digits(power)}`, "middle", "quiet"),
       ...scale_bar(per_pixel, 2 * (film_x - x0), millimetres_text));
     by_id("camera-caption").textContent = 
-        `Lens ${millimetres_text(aperture_of(lens))} wide, film ${millimetres_text(height)} high`;
+        `Behind the lens, ${millimetres_text(aperture_of(lens))} wide`;
   }
 
   function draw_film() {
@@ -214,8 +218,8 @@ export function make_lens_diagram({ on_object, on_focus }) {
       made.push(svg_element("circle", { cx: middle_x, cy: middle_y, r: max_coc_px * size, class: "limit" }));
     }
     const mm = film_height(lens, fov_y_degrees) / height_px;
-    const bar = size >= 4 ? `1 square = 1 px = ${millimetres_text(mm)}`
-                          : `height ${cells} px = ${millimetres_text(cells * mm)}`;
+    const bar = size >= 4 ? `1 px = ${millimetres_text(mm)}`
+                          : `${cells} px = ${millimetres_text(cells * mm)}`;
     drawings.film.replaceChildren(...made, text(4, kHeight - 5, bar, "start", "quiet halo"),
                                   text(across - 4, 14, `radius ${three_digits(radius)} px${cut ? ", cut" : ""}`, "end",
                                        "object halo"));

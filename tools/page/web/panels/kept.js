@@ -6,10 +6,10 @@ import { announce, by_id, element } from "../dom.js";
 const kMost = 6;
 const kHeight = 60;  // of a small picture, in pixels
 
-/** `link()` is that of the state now, `words()` names it, `open(link)` brings one back. */
+/** `link()` is that of the state now, `words()` two lines that name it, `open(link)` brings one back. */
 export function start_kept({ link, words, canvas, open }) {
   const list = by_id("kept");
-  const kept = [];  // {link, words, picture}
+  const kept = [];  // {link, words, picture}, the oldest first
 
   function small_picture() {
     const from = canvas();
@@ -24,9 +24,10 @@ export function start_kept({ link, words, canvas, open }) {
     document.documentElement.toggleAttribute("data-kept", kept.length > 0);
     list.hidden = kept.length === 0;
     list.replaceChildren(...kept.map((one) => {
-      const press = element("button", { type: "button", title: one.words }, one.picture, element("span", {}, one.words));
+      const press = element("button", { type: "button", title: one.words.join(", ") }, one.picture,
+                            ...one.words.map((line) => element("span", {}, line)));
       press.addEventListener("click", () => open(one.link));
-      const away = element("button", { type: "button", class: "away", "aria-label": `Forget ${one.words}` }, "×");
+      const away = element("button", { type: "button", class: "away", "aria-label": `Forget ${one.words.join(", ")}` }, "×");
       away.addEventListener("click", () => {
         kept.splice(kept.indexOf(one), 1);
         show();
