@@ -77,7 +77,8 @@ export const kSteps = {
   2.1: { state: "scene=figures", found: ({ state, side }) => !side.dof && state.show === "depth" },
   2.2: { state: "scene=sphere-world&max=2",
          watch: ({ frame }) => `${three_digits(100 * frame.cut_share)} % of the pixels have a circle that is cut`,
-         found: ({ side, frame }) => frame.cut_share === 0 && side.max_coc_px < frame.largest_coc_px + 1 },
+         found: ({ state, side, frame }) => state.scene === "sphere-world" && frame.cut_share === 0 &&
+                                            side.max_coc_px !== null && side.max_coc_px < frame.largest_coc_px + 1 },
   2.3: { state: "scene=night-lights&method=two-pass&b.method=two-pass&editing=1",
          found: ({ state }) => state.sides[0].method === "two-pass" && kRound.includes(state.sides[1]?.method) },
   2.4: { state: "case=leak-far&value=16&method=scatter", truth: true, watch: flip_text,
