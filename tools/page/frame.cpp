@@ -73,6 +73,25 @@ ShownFrame scene_frame(Page& page, const FrameSettings& settings, const Json& re
   return shown;
 }
 
+/// Puts a map's numbers: circles' signed radii in pixels of this size, or depths in metres. False:
+/// what is shown is no such map.
+bool put_map_numbers(const ShownFrame& shown, Pixels& pixels) {
+  const Image& picture = shown.drawn->picture();
+  const auto depth_at = [&](int x, int y) {
+    return load_texel<Format::rgba16f>(picture, x, y).w;
+  };
+  if (shown.settings.show == Show::depth) {
+    put_numbers(picture.width, picture.height, depth_at, pixels);
+    return true;
+  }
+  if (shown.settings.show != Show::coc || !shown.lens) return false;
+  const PixelCoc& coc = shown.lens->settings.coc;
+  put_numbers(
+      picture.width, picture.height,
+      [&](int x, int y) { return coc_radius_px(coc, depth_at(x, y)); }, pixels);
+  return true;
+}
+
 }  // namespace
 
 Json answer_frame(Page& page, const Json& request) {
@@ -99,7 +118,10 @@ Json answer_frame(Page& page, const Json& request) {
   } else if (shown.lens) {
     add_lens_figures(reply, *shown.lens, drawn, *page.pool);
   }
-  show_on_screen(shown.picture, page.pixels, *page.pool);
+  const Json* numbers = given(request, "numbers");
+  const bool wants_numbers = numbers != nullptr && numbers->boolean();
+  reply["numbers"] = wants_numbers && put_map_numbers(shown, page.pixels);
+  if (!reply["numbers"].boolean()) show_on_screen(shown.picture, page.pixels, *page.pool);
   page.shown = std::move(shown);
   return reply;
 }

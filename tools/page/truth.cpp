@@ -93,12 +93,23 @@ Image found_truth(Page& page, const ShownFrame& shown) {
   return mean_of(*page.truth, shot_of_truth(page, shown), *page.pool);
 }
 
-void show_truth(Page& page, const std::string& what, const Image& truth, const Image& picture) {
+/// `numbers`: the map's in place of its colours.
+void show_truth(Page& page, const std::string& what, bool numbers, const Image& truth,
+                const Image& picture) {
   if (what == "truth") {
     show_on_screen(truth, page.pixels, *page.pool);
   } else if (what == "error") {
     const PixelMap map = flip_map(truth, picture, clamped_tone(), *page.pool);
-    show_on_screen(heat_picture(map), page.pixels, *page.pool);
+    if (numbers) {
+      put_numbers(
+          map.width, map.height,
+          [&](int x, int y) {
+            return static_cast<float>(row(map, y)[static_cast<std::size_t>(x)]);
+          },
+          page.pixels);
+    } else {
+      show_on_screen(heat_picture(map), page.pixels, *page.pool);
+    }
   } else {
     throw UsageError("show '" + what + "': there are truth, error");
   }
@@ -112,6 +123,20 @@ double flip_of_shown(ShownFrame& shown, const Image& truth, int samples, bool do
                       4 * samples > 5 * known->samples;
   if (is_new) known = {samples, mean_flip(truth, shown.picture, pool)};
   return known->flip;
+}
+
+/// Whether the picture of a case holds, by the case's own measure; null where there is none of one
+/// frame.
+Json verdict_of(const Page& page, const ShownFrame& shown, const Image& truth) {
+  const std::optional<StressTrial>& trial = shown.drawn->trial;
+  if (!trial || trial->frames.size() != 1 || !page.opened->stress_case) return nullptr;
+  const StressCase& of = *page.opened->stress_case;
+  const double value =
+      of.measure({*trial, page.opened->severity, std::span{&truth, 1}, std::span{&shown.picture, 1},
+                  *page.pool});
+  return {{"value", number_or_null(value)}, {"limit", of.limit},
+          {"unit", of.unit},                {"measured", of.measured},
+          {"why", of.why_limit},            {"holds", value <= of.limit}};
 }
 
 }  // namespace
@@ -137,11 +162,15 @@ Json answer_truth(Page& page, const Json& request) {
              {"half_set_rms", rms ? Json(*rms) : Json(nullptr)},
              {"flip_mean", flip_of_shown(*page.shown, truth, samples, done, *page.pool)},
              {"done", done}};
+  if (done) reply["verdict"] = verdict_of(page, *page.shown, truth);
   if (const Json* hash = request.find("hash"); hash != nullptr && hash->boolean()) {
     reply["hash"] = hash_text(hash_image(truth));
   }
   if (const Json* show = request.find("show")) {
-    show_truth(page, show->text(), truth, shown.picture);
+    const Json* numbers = given(request, "numbers");
+    const bool wants_numbers = numbers != nullptr && numbers->boolean();
+    show_truth(page, show->text(), wants_numbers, truth, shown.picture);
+    reply["numbers"] = wants_numbers && show->text() == "error";
     reply["width"] = truth.width;
     reply["height"] = truth.height;
   }

@@ -21,7 +21,10 @@ const kFrameMs = 60000;
 const kMostBytesOfOneFile = 3e6;
 
 const tests = [];
-/** `options` are of the browser's context. A page has loaded and drawn its first frame. */
+/**
+ * `options` are of the browser's context; `at`: the link that is opened. A page has loaded and drawn
+ * its first frame. What `run` returns says why it has not tested.
+ */
 const test = (claim, run, options = {}) => tests.push({ claim, run, options });
 
 const text_of = (page, id) => page.locator(`#${id}`).textContent();
@@ -91,7 +94,7 @@ test("every control changes the picture to the program's for the same settings",
   await changed("filter size");
   await set_number(page, "coc-scale-part", 2);
   await changed("scale of the circles");
-  await page.locator("#method").selectOption("disc-layers");
+  await page.locator("#method").selectOption("two-pass");
   await changed("method");
   await page.locator("#coc-map").check({ force: true });
   await changed("map of the circles");
@@ -258,7 +261,7 @@ test("a picture and its depth are refocused with the program's bits, and scenes 
   await changed("a click");
   await set_number(page, "f-number-part", 1.2);
   await changed("f-number");
-  await page.locator("#method").selectOption("disc-layers");
+  await page.locator("#method").selectOption("two-pass");
   await changed("method");
   const [download] = await Promise.all([page.waitForEvent("download"),
                                         page.locator("#save-picture").click()]);
@@ -283,7 +286,7 @@ test("a picture and its depth are refocused with the program's bits, and scenes 
 
   await page.locator("#scene").selectOption("figures");
   await page.waitForSelector("#depth-part", { state: "hidden" });
-  await page.locator("#method").selectOption("two-pass");
+  await page.locator("#method").selectOption("disc-layers");
   assert.strictEqual(await drawn(page), first);
   await equals_program(page);
 });
@@ -558,7 +561,7 @@ test("an unusable number says the range and goes back", async (page) => {
   const hash = await drawn(page);
   for (const [part, value, said] of [["f-number-part", "-1", /^f-number: give 1e-9 to 1e9$/],
                                      ["focal-length-part", "0", /^Focal length: give [\de.-]+ to [\de]+ mm$/],
-                                     ["max-coc-part", "", /^Filter size: give 0 to 1024 px/]]) {
+                                     ["max-coc-part", "", /^Filter size, radius: give 0 to 1024 px/]]) {
     const field = page.locator(`#${part} input[type=number]`);
     const before = await field.inputValue();
     await field.fill(value);
@@ -592,7 +595,7 @@ name = "bloom"
 
 test("an own scene is asked for after a reload, and has its settings again", async (page, { context, address }) => {
   const files = [text_file("box.obj", square("box.mtl")), text_file("box.mtl", kRed)];
-  const figures = await drawn(page);
+  await drawn(page);
   await page.locator("#files").setInputFiles(files);
   await opened(page, "box");
   await set_number(page, "focal-length-part", 77);
@@ -601,7 +604,8 @@ test("an own scene is asked for after a reload, and has its settings again", asy
   await page.waitForFunction(() => /own=box\.obj.*f=77.*camera=/.test(location.hash), null, { timeout: 5000 });
   await page.reload();
   assert.match(await error_line(page), /box\.obj.*drop it on the page again/);
-  assert.strictEqual(await drawn(page), figures);
+  await drawn(page);
+  assert.strictEqual(await page.locator("#scene").inputValue(), "portrait");
   await page.locator("#files").setInputFiles(files);
   await opened(page, "box");
   assert.strictEqual(await drawn(page), hash);
@@ -748,6 +752,247 @@ test("sliders tell their values in units, and every canvas has a name", async (p
   assert.deepStrictEqual(unnamed, []);
 });
 
+/** Whether the whole picture is in the window. */
+const picture_in_sight = (page) => page.evaluate(() => {
+  const { top, bottom, left, right } = document.getElementById("picture").getBoundingClientRect();
+  return top >= -1 && left >= -1 && bottom <= innerHeight + 1 && right <= innerWidth + 1;
+});
+
+for (const [width, height] of [[1440, 900], [1024, 768], [768, 1024], [390, 844]]) {
+  test(`the picture stays in sight while every panel scrolls, at ${width}x${height}`, async (page) => {
+    for (const shape of ["512x512", "1024x512"]) {
+      await page.locator(`input[name=size][value='${shape}']`).evaluate((choice) => choice.click());
+      await drawn(page);
+      for (const tab of await page.locator("[role=tab]:not([hidden])").all()) {
+        await tab.click();
+        await page.evaluate(() => {
+          for (const part of [document.scrollingElement, ...document.querySelectorAll(".bench, .panel")]) {
+            part.scrollTop = part.scrollHeight;
+          }
+        });
+        assert.ok(await picture_in_sight(page), `${shape}, ${await tab.textContent()}`);
+      }
+      await page.locator("#tab-lens").click();
+    }
+    const tops = await page.locator("[role=tab]:not([hidden])").evaluateAll((tabs) => tabs.map((tab) => tab.offsetTop));
+    assert.strictEqual(new Set(tops).size, 1, "the tabs take several rows");
+    if (width < 1440) return;
+    const wrapped = await page.evaluate(() => {
+      const is_wrapped = (row) => {
+        const boxes = [...row.children].map((one) => one.getBoundingClientRect()).filter((box) => box.height > 2);
+        return boxes.some((box) => boxes.some((other) => box.top >= other.bottom - 1));
+      };
+      const rows = document.querySelectorAll("header, .tabs, .line, .choices, .panel .row, .stage .row");
+      const bodies = [...document.querySelectorAll(".equation .body")].filter((body) => body.clientHeight > 44);
+      return [...[...rows].filter(is_wrapped), ...bodies].map((one) => one.textContent.trim());
+    });
+    assert.deepStrictEqual(wrapped, []);
+  }, { viewport: { width, height } });
+}
+
+/** The canvas's colour at a part of its width and height. */
+const colour_at = (page, x, y) => page.evaluate(([part_x, part_y]) => {
+  const canvas = document.getElementById("canvas-a");
+  const place = [Math.floor(part_x * canvas.width), Math.floor(part_y * canvas.height)];
+  return [...canvas.getContext("2d").getImageData(...place, 1, 1).data].slice(0, 3);
+}, [x, y]);
+
+/** The canvas's luminances: those that 1 and 99 % are below. */
+const luminances = (page) => page.evaluate(() => {
+  const canvas = document.getElementById("canvas-a");
+  const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+  const all = [];
+  for (let i = 0; i < data.length; i += 4) all.push(0.2126 * data[i] + 0.7152 * data[i + 1] + 0.0722 * data[i + 2]);
+  all.sort((a, b) => a - b);
+  return [0.01, 0.99].map((part) => all[Math.floor(part * (all.length - 1))]);
+});
+
+test("the circles' map has two hues, before and behind the focus, and a legend", async (page) => {
+  await page.locator("#coc-map").check({ force: true });
+  await drawn(page);
+  assert.match(await text_of(page, "legend"), /px: orange before focus, blue behind.*−8.*0.*8/);
+  const box = await page.locator("#picture").boundingBox();
+  const seen = new Set();
+  for (const [x, y] of [[0.16, 0.4], [0.76, 0.38], [0.12, 0.72], [0.8, 0.85]]) {
+    await page.mouse.move(box.x + x * box.width, box.y + y * box.height);
+    await page.waitForFunction((place) => document.getElementById("pixel").textContent.startsWith(place),
+                               `${Math.floor(x * 512)}, `);
+    const [, side] = /radius [\d.]+ px, (before|behind) the focus/.exec(await text_of(page, "pixel"));
+    const [red, , blue] = await colour_at(page, x, y);
+    assert.ok(side === "before" ? red > blue + 20 : blue > red + 20, `${side}: ${await colour_at(page, x, y)}`);
+    seen.add(side);
+  }
+  assert.strictEqual(seen.size, 2);
+  await page.locator("input[name=show][value=image]").check({ force: true });
+  await drawn(page);
+  assert.ok(await page.locator("#legend").isHidden());
+});
+
+test("the maps of depth and of the error use their whole scale, whatever the scene", async (page) => {
+  for (const scene of ["figures", "sphere-world", "near-fence"]) {
+    await page.locator("#scene").selectOption(scene);
+    await opened(page, "open");
+    await page.locator("input[name=show][value=depth]").check({ force: true });
+    await drawn(page);
+    assert.match(await text_of(page, "legend"), /Depth.*\d c?m.*\d c?m.*\d c?m/);
+    const depth = await luminances(page);
+    assert.ok(depth[1] - depth[0] > 60, `${scene}: depths from ${depth}`);
+    await page.locator("input[name=show][value=error]").check({ force: true });
+    await page.waitForFunction(() => /FLIP of each pixel/.test(document.getElementById("legend").textContent), null,
+                               { timeout: kFrameMs });
+    const error = await luminances(page);
+    assert.ok(error[1] > 90, `${scene}: errors up to ${error}`);
+    await page.locator("input[name=show][value=image]").check({ force: true });
+    await drawn(page);
+  }
+});
+
+test("the lens's drawing magnifies the film and reaches infinity, and draws without laying out the page", async (page) => {
+  const drawing = (name) => page.locator(`#diagram-${name}`);
+  assert.match(await drawing("camera").textContent(), /× 20/);
+  assert.match(await drawing("world").textContent(), /∞/);
+  assert.doesNotMatch(await drawing("world").textContent(), /sharp to ∞/);
+  const tall = await drawing("camera").locator("g .circle").evaluate((bar) => bar.getBoundingClientRect().height);
+  assert.ok(tall > 20, `the circle on the film is ${tall} px`);
+  await set_number(page, "f-number-part", 16);
+  await set_number(page, "focus-part", 10);
+  await drawn(page);
+  assert.match(await drawing("world").textContent(), /sharp to ∞/);
+  const session = await page.context().newCDPSession(page);
+  await session.send("Performance.enable");
+  const layouts = async () => (await session.send("Performance.getMetrics")).metrics
+      .find(({ name }) => name === "LayoutCount").value;
+  const before = await layouts();
+  await page.evaluate(async () => {
+    const slider = document.getElementById("focus-slider");
+    for (let i = 0; i < 100; ++i) {
+      slider.value = 400 + i;
+      slider.dispatchEvent(new Event("input"));
+      await null;  // the store tells
+      await null;
+    }
+  });
+  const count = await layouts() - before;
+  if (process.env.FIGURES) console.log(`  100 changes in one turn: ${count} layouts`);
+  assert.ok(count <= 5, `${count} layouts`);
+});
+
+test("measured methods are dots of time and error, and rows that can be sorted", async (page) => {
+  await page.locator("#tab-methods").click();
+  await page.locator("#radii").fill("4 8 16");
+  await page.locator("#measure").click();
+  await page.waitForFunction(() => / measured$/.test(document.getElementById("measure-state").textContent), null,
+                             { timeout: 6 * kFrameMs });
+  const cells = await page.locator("#methods-table td.measured").count();
+  assert.strictEqual(await page.locator("#methods-chart .dot").count(), cells);
+  assert.match(await page.locator("#methods-chart").getAttribute("aria-label"), /both quicker and better than \w/);
+  const column = async (index) => page.locator("#methods-table tbody tr").evaluateAll((rows, at) => (
+      rows.map((row) => Number(row.children[at].textContent)).filter(Number.isFinite)), index);
+  for (const [button, index] of [["ms at 8 px: sort", 3], ["FLIP at 8 px: sort", 4]]) {
+    await page.getByRole("button", { name: button }).click();
+    const values = await column(index);
+    assert.deepStrictEqual(values, values.slice().sort((a, b) => a - b), button);
+  }
+  const cut = await page.locator("#methods-table").evaluate((table) => table.scrollWidth - table.parentElement.clientWidth);
+  assert.ok(cut <= 0, `${cut} px of the table are cut off`);
+  const [ms] = await column(1);
+  assert.ok(ms > 0);
+}, { viewport: { width: 1440, height: 900 } });
+
+test("a failure case's answer stands beside its picture, and whether the method holds", async (page) => {
+  await page.locator("#tab-cases").click();
+  await page.locator("#cases button").nth(2).click();
+  await page.waitForSelector("#case-answer:not([hidden])", { timeout: kFrameMs });
+  const verdict = /holds? with these settings|does not hold with these settings/;
+  assert.match(await text_of(page, "case-verdict"), verdict);
+  const by_default = await text_of(page, "case-verdict");
+  assert.match(by_default, /It holds/);
+  await page.locator("#method").selectOption("two-pass");
+  await page.waitForFunction(() => /does not hold/.test(document.getElementById("case-verdict").textContent), null,
+                             { timeout: kFrameMs });
+  assert.ok(await page.locator("#case-answer").isVisible());
+  await page.locator("#scene").selectOption("figures");
+  await page.waitForSelector("#case-answer", { state: "hidden" });
+});
+
+test("the first sight is a portrait by the default method, and the thesis's scenes are one choice away", async (page) => {
+  assert.strictEqual(await page.locator("#scene").inputValue(), "portrait");
+  assert.strictEqual(await page.locator("#method").inputValue(), "disc-layers");
+  await equals_program(page);
+  const thesis = await page.locator("#scene optgroup").first().evaluate((group) => (
+      [group.label, ...[...group.children].map(({ value }) => value)]));
+  assert.deepStrictEqual(thesis, ["The thesis’s scenes", "figures", "cube-room", "sphere-world"]);
+}, { at: "" });
+
+test("a drag never blocks the page for 50 ms, and shows pictures all the while", async (page) => {
+  const is_busy = os.loadavg()[0] > os.cpus().length;
+  await page.evaluate(() => {
+    globalThis.long_tasks = [];
+    new PerformanceObserver((list) => globalThis.long_tasks.push(...list.getEntries().map(({ duration }) => duration)))
+        .observe({ entryTypes: ["longtask"] });
+    globalThis.painted = [];
+    const put = CanvasRenderingContext2D.prototype.putImageData;
+    CanvasRenderingContext2D.prototype.putImageData = function (...words) {
+      globalThis.painted.push(performance.now());
+      return put.apply(this, words);
+    };
+  });
+  const box = await page.locator("#focus-slider").boundingBox();
+  await page.mouse.move(box.x + 0.3 * box.width, box.y + box.height / 2);
+  await page.mouse.down();
+  const began = await page.evaluate(() => performance.now());
+  for (let i = 0; i < 60; ++i) {
+    await page.mouse.move(box.x + (0.3 + 0.005 * i) * box.width, box.y + box.height / 2);
+    await page.waitForTimeout(16);
+  }
+  await page.mouse.up();
+  const { long_tasks, painted, ended } = await page.evaluate(() => (
+      { long_tasks: globalThis.long_tasks, painted: globalThis.painted, ended: performance.now() }));
+  const times = [began, ...painted.filter((time) => time > began && time < ended)];
+  const gaps = times.slice(1).map((time, i) => time - times[i]).sort((a, b) => a - b);
+  if (process.env.FIGURES) {
+    console.log(`  ${gaps.length} pictures in ${(ended - began).toFixed(0)} ms, ${gaps[gaps.length >> 1]?.toFixed(0)} ms apart ` +
+                `(median), ${gaps[gaps.length - 1]?.toFixed(0)} at the most; long tasks: ${long_tasks.map(Math.round)}`);
+  }
+  if (is_busy) return "other programs take the cores";
+  assert.deepStrictEqual(long_tasks, []);
+  assert.ok(gaps[gaps.length >> 1] < 100, `a picture each ${gaps[gaps.length >> 1]} ms`);
+  return null;
+});
+
+test("the focus follows the pointer if it is asked to", async (page) => {
+  const box = await page.locator("#picture").boundingBox();
+  const point = (x, y) => page.mouse.move(box.x + x * box.width, box.y + y * box.height);
+  const first = await drawn(page);
+  await point(0.3, 0.3);
+  assert.strictEqual(await drawn(page), first);
+  await page.locator("#focus-follow").check();
+  await point(0.16, 0.4);
+  await page.waitForFunction(() => /at=0\.1/.test(location.hash), null, { timeout: 5000 });
+  const near_cube = await drawn(page);
+  assert.notStrictEqual(near_cube, first);
+  await equals_program(page);
+  await page.locator("#focus-follow").uncheck();
+  await point(0.8, 0.85);
+  assert.strictEqual(await drawn(page), near_cube);
+});
+
+test("kept settings stand under the picture, and come back", async (page) => {
+  const hashes = [];
+  for (const stop of ["1.4", "4", "11"]) {
+    await set_number(page, "f-number-part", stop);
+    hashes.push(await drawn(page));
+    await page.locator("#keep-settings").click();
+  }
+  assert.strictEqual(await page.locator("#kept li").count(), 3);
+  assert.ok(await picture_in_sight(page));
+  await page.locator("#kept li button").first().click();
+  await page.waitForFunction(() => document.getElementById("f-number").value === "1.4");
+  assert.strictEqual(await drawn(page), hashes[0]);
+  await page.locator("#kept .away").first().click();
+  assert.strictEqual(await page.locator("#kept li").count(), 2);
+}, { viewport: { width: 1440, height: 900 } });
+
 /** axe-core's text, or null where it is not installed. */
 const axe = (() => {
   try {
@@ -792,6 +1037,12 @@ async function no_findings(page, has_keys) {
   await check("photographer’s mode, two settings, an unusable number");
   await page.locator("#focal-length").blur();
   await page.locator("#compare").uncheck();
+  await page.locator("#keep-settings").click();
+  await check("kept settings");
+  await page.locator("#coc-map").evaluate((choice) => choice.click());
+  await drawn(page);
+  await check("a map with its legend");
+  await page.locator("#coc-map").press("m");
   await page.locator("#focus-part button.why").click();
   await check("a tip");
   await page.locator("#method").selectOption("accumulation");
@@ -871,6 +1122,7 @@ const hash_by_pipeline = (file) => JSON.parse(execFileSync(program, [
 
 if (fs.existsSync(path.join(folder, "softfocus-compiler.wasm"))) {
   test("a shader of one's own is compiled, measured, told by its line, and in the link", async (page, { context, address }) => {
+    await page.locator("#method").selectOption("two-pass");
     const two_pass = await drawn(page);
     await page.locator("#tab-shader").click();
     assert.strictEqual(await shader_drawn(page, ""), hash_by_pipeline("lesson/gather.toml"));
@@ -973,6 +1225,8 @@ async function gpu_does(page, button, done) {
 }
 
 test("the GPU draws and filters the frame, and says what differs", async (page) => {
+  await page.locator("#method").selectOption("two-pass");
+  await drawn(page);
   await page.locator("#tab-gpu").click();
   assert.match(await text_of(page, "gpu-support"), /WebGL2 and EXT_color_buffer_float are here/);
   await gpu_does(page, "gpu-draw", { id: "gpu-differences", words: "Frame: " });
@@ -1102,7 +1356,7 @@ function serve() {
 }
 
 async function run_one(browsers, address, { claim, run, options }) {
-  const { script, no_gpu, ...of_context } = options;
+  const { script, no_gpu, at = "#scene=figures", ...of_context } = options;
   const browser = await (no_gpu ? browsers.without_gpu() : browsers.with_gpu());
   const context = await browser.newContext({ viewport: { width: 1400, height: 900 }, ...of_context });
   const faults = [];
@@ -1110,11 +1364,11 @@ async function run_one(browsers, address, { claim, run, options }) {
     if (script) await prepend_to_worker(context, script);
     const page = await context.newPage();
     page.on("pageerror", (error) => faults.push(error.message));
-    await page.goto(address);
+    await page.goto(`${address}${at}`);
     await drawn(page);
-    await run(page, { context, address });
+    const why_not = await run(page, { context, address });
     assert.deepStrictEqual(faults, []);
-    console.log(`pass: ${claim}`);
+    console.log(why_not ? `skipped: ${claim}: ${why_not}` : `pass: ${claim}`);
     return true;
   } catch (error) {
     console.log(`FAIL: ${claim}\n  ${String(error.stack ?? error).replaceAll("\n", "\n  ")}`);

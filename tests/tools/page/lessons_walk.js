@@ -197,7 +197,7 @@ module.exports = ({ test, drawn, set_number, folder, single_file, ...of }) => {
       const { server, address } = await serve(folder);
       try {
         assert.ok(address.includes(of_network), address);
-        await page.goto(address);
+        await page.goto(`${address}#scene=figures`);
         assert.strictEqual(await drawn(page), hash);
         assert.match(await of.text_of(page, "version"), /one thread/);
       } finally {
@@ -249,6 +249,7 @@ module.exports = ({ test, drawn, set_number, folder, single_file, ...of }) => {
     await other.close();
     await tab(page, "lessons");
     await page.locator("#lesson").selectOption("4.1");
+    await page.locator("#step-set").click();
     await state_is(page, "✓ Found.");
     assert.match(await page.locator("#lesson option:checked").textContent(), /\(2 of 6\)/);
     await page.locator("#step-list button").nth(2).click();

@@ -97,6 +97,40 @@ const kTests = {
     }
   },
 
+  "a map gives its numbers, and the hash of the program's map"({ ask, module }) {
+    const numbers = ({ width, height }) => Array.from(
+        new Float32Array(module.HEAPU8.slice(module._softfocus_pixels()).buffer, 0, width * height));
+    ask({ do: "open", scene: "figures" });
+    for (const show of ["coc", "depth"]) {
+      const reply = ask({ do: "frame", size: [64, 48], show, numbers: true });
+      assert.strictEqual(reply.hash, native_hash(["figures", "--size", "64x48", "--show", show, "--method", "two-pass"]), show);
+      const all = numbers(reply);
+      for (const [x, y] of [[8, 17], [32, 24], [10, 36]]) {
+        const { depth_m, coc_radius_px } = ask({ do: "pixel", x, y });
+        assert.strictEqual(all[64 * y + x], show === "coc" ? coc_radius_px : depth_m, `${show} at ${x}, ${y}`);
+      }
+      if (show === "coc") assert.ok(Math.min(...all) < 0 && Math.max(...all) > 0);
+    }
+    assert.strictEqual(ask({ do: "frame", size: [64, 48], numbers: true }).numbers, false);
+    const error = ask({ do: "truth", views: 16, show: "error", numbers: true });
+    const mean = numbers(error).reduce((sum, value) => sum + value, 0) / (64 * 48);
+    assert.ok(Math.abs(mean - error.flip_mean) < 1e-3 * error.flip_mean, `${mean}, not ${error.flip_mean}`);
+  },
+
+  "a case's picture is told to hold or not, by the case's own measure"({ ask }) {
+    ask({ do: "open", case: "near-edge", value: 16 });
+    const verdict_of = (method) => {
+      ask({ do: "frame", size: [128, 128], method });
+      return ask({ do: "truth" }).verdict;
+    };
+    const [right, wrong] = [verdict_of("disc-layers"), verdict_of("two-pass")];
+    assert.ok(right.holds && right.value <= right.limit);
+    assert.ok(!wrong.holds && wrong.value > wrong.limit);
+    ask({ do: "open", scene: "figures" });
+    ask({ do: "frame", size: [32, 32] });
+    assert.strictEqual(ask({ do: "truth", views: 16 }).verdict ?? null, null);
+  },
+
   "the truth has the hash of accumulation with as many samples of the sequence"({ ask }) {
     ask({ do: "open", scene: "clutter" });
     ask({ do: "frame", size: [48, 32] });

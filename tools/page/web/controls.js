@@ -60,7 +60,7 @@ export function make_controls({ store, camera, move, focus_m, max_coc, object_m,
       set: (value) => side({ focus: { m: value } }),
       shown_digits: () => (store.side().focus.at ? 4 : 5),
     });
-    add("max-coc", "max_coc_px", { label: "Filter size", key: "X", curve: "root", from: 0, to: 128,
+    add("max-coc", "max_coc_px", { label: "Filter size, radius", key: "X", curve: "root", from: 0, to: 128,
                                    digits: 2, decimals: 1, get: max_coc, shown_digits: () => 4 });
     add("coc-scale", "coc_scale", { label: "Scale of the circles", unit: "×", key: "K",
                                     curve: "root", from: 0, to: 10, digits: 2, decimals: 2,

@@ -21,7 +21,7 @@ function setting_key(state) {
 }
 
 /**
- * `moving()`: whether the animation plays. `paint(side, reply, pixels)` shows a picture;
+ * `moving()`: whether the animation plays. `paint(side, reply, pixels, state, preview)` shows a picture;
  * `on_frame(reply, coarse, state)` is told of the edited side's numbers after each frame,
  * `on_error(line)` of a frame that could not be, `on_settled(settled)` whenever the whole picture
  * has come or is not the state's any more.
@@ -98,7 +98,7 @@ export function make_frames({ engine, store, moving, paint, on_frame, on_error, 
         last = null;
         break;
       }
-      paint(index, reply, pixels);
+      paint(index, reply, pixels, state, preview);
       // A drawing that was kept is told with the time that it once took.
       total_ms += reply.filter_ms + (reply.draw_ms === drawn_ms ? 0 : reply.draw_ms);
       drawn_ms = reply.draw_ms;

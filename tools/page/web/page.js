@@ -11,6 +11,7 @@ import { make_frames, picture_key } from "./frames.js";
 import { start_gpu } from "./panels/gpu.js";
 import { show_hash, start_hashes } from "./panels/hashes.js";
 import { start_keys } from "./keys.js";
+import { start_kept } from "./panels/kept.js";
 import { lens_numbers, start_lens_view } from "./lens/lens_view.js";
 import { start_lessons } from "./lessons/lessons.js";
 import { link_of, read_link, shader_of, state_to_open, take_shader, with_link } from "./link.js";
@@ -21,7 +22,7 @@ import { locked_fov_degrees } from "./lens/photographer.js";
 import { start_pointer } from "./pointer.js";
 import { save_report, shown_ms } from "./panels/report.js";
 import { start_shader } from "./panels/shader.js";
-import { first_state, kMaps, make_store, parameters, set_parameters, with_picture, with_scene } from "./state.js";
+import { first_state, kFirstScene, kMaps, kThesisScenes, make_store, parameters, set_parameters, with_picture, with_scene } from "./state.js";
 import { start_tabs } from "./tabs.js";
 import { start_theme } from "./theme.js";
 import { start_tips } from "./tips.js";
@@ -91,9 +92,9 @@ function show_shadow_counts({ shadows }) {
 const frames = make_frames({
   engine, store,
   moving: () => playing,
-  paint: (side, reply, pixels) => {
+  paint: (side, reply, pixels, { show }, preview) => {
     by_id("over").hidden = true;
-    view.paint(side, reply, pixels);
+    view.paint(side, show, reply, pixels, preview);
   },
   on_frame,
   on_error: (line) => {
@@ -132,11 +133,20 @@ const truth = make_truth({
     const { show } = store.get();
     return show === "truth" || show === "error" ? show : null;
   },
-  paint: (reply, pixels) => view.paint_over(store.get(), reply, pixels),
+  paint: (kind, reply, pixels) => view.paint_over(store.get(), kind, reply, pixels),
+  on_done: show_answer,
   on_error: show_error,
 });
+
+/** A failure case's known answer, beside its picture. */
+async function show_answer(done) {
+  const has_answer = Boolean(done && store.get().failure);
+  const answer = has_answer ? await engine.ask({ do: "truth", show: "truth" }, kAsked) : null;
+  const is_here = answer?.pixels && frames.settled() && truth.numbers() === done;
+  cases.show_answer(is_here ? answer : null);
+}
 let methods_table = { renew() {} };
-let cases = { show() {} };
+let cases = { show() {}, show_answer() {} };
 let picture = { show() {} };
 const gpu = start_gpu({ engine, store, settled: frames.settled });
 const shader = start_shader({
@@ -209,16 +219,18 @@ store.listen((state, before) => {
   cases.show(state.failure);
   picture.show(state.picture, opened?.picture);
   keep_link();
-  const measured = state.show === "truth" || state.show === "error";
-  if (measured && !truth.wanted()) truth.want(true);
   const changed = picture_key(state) !== picture_key(before) || state.editing !== before.editing;
   if (changed || state.show !== before.show) {
+    frames.want(state.time === before.time && state.show === before.show);
     if (changed) {
       truth.renew();
       methods_table.renew();
     }
-    frames.want(state.time === before.time && state.show === before.show);
   }
+  // After the frame, for the one before may be a map, which has no truth.
+  const measured = state.show === "truth" || state.show === "error" ||
+                   (state.failure && state.failure !== before.failure);
+  if (measured && !truth.wanted()) truth.want(true);
 });
 
 function keep_known({ focus_m: focus, max_coc_px: radius }, side) {
@@ -311,7 +323,7 @@ async function go_back(line) {
   const { scene, failure } = what;
   if (before) await open(before, { state: before, read: own.get(before.scene)?.read });
   else if (words?.size) await open({ scene, failure }, { words: new Map() });
-  else if (scene !== "figures") await open({ scene: "figures" }, { words: new Map() });
+  else if (scene !== kFirstScene) await open({ scene: kFirstScene }, { words: new Map() });
   show_error(before ? `${line}; what was open before is here again` : line);
 }
 
@@ -464,6 +476,7 @@ async function copy_link() {
 let asking_pixel = false;
 async function point_at(place) {
   if (!place) by_id("pixel").textContent = "\u00a0";
+  if (place && by_id("focus-follow").checked) focus_at(place);
   if (!place || asking_pixel || !frames.settled() || playing) return;
   asking_pixel = true;
   const [width, height] = [last_reply.width, last_reply.height];
@@ -475,14 +488,15 @@ async function point_at(place) {
   const metres = reply.depth_m === null ? "∞" : metres_text(reply.depth_m);
   const depth = reply.has_depth ? ` · depth ${metres}` : "";
   const circle = reply.coc_radius_px === null || reply.coc_radius_px === undefined
-      ? "" : ` · circle ${three_digits(reply.coc_radius_px)} px`;
+      ? "" : ` · circle’s radius ${three_digits(Math.abs(reply.coc_radius_px))} px, ` +
+             `${reply.coc_radius_px < 0 ? "before" : "behind"} the focus`;
   by_id("pixel").textContent =
       `${x}, ${y}${depth}${circle} · light ${reply.colour_linear.map(three_digits).join(" ")}`;
 }
 
+const focus_at = (at) => store.change_side({ focus: { at: at.map((part) => Number(part.toFixed(4))) } });
 const pointer = start_pointer(by_id("picture"), {
-  camera, move, turn_light, point_at,
-  focus_at: (at) => store.change_side({ focus: { at: at.map((part) => Number(part.toFixed(4))) } }),
+  camera, move, turn_light, point_at, focus_at,
   focus_place: () => store.side().focus.at ?? null,
 });
 
@@ -492,7 +506,7 @@ start_keys({
   camera_key: pointer.key,
   commands: [
     { keys: ["b"], words: "Depth of field on and off", run: () => store.change_side({ dof: !store.side().dof }) },
-    { keys: ["m"], words: "Map of the circles: black is sharp", run: () => toggle_show("coc") },
+    { keys: ["m"], words: "Map of the circles: black is sharp, orange before the focus, blue behind", run: () => toggle_show("coc") },
     { keys: ["/"], words: "Wireframe", run: () => { if (scene_look()) toggle_show("wireframe"); } },
     { keys: ["j"], words: "Next kind of shadows", run: () => controls.next_shadows() },
     { keys: ["i"], words: "Dragging and the arrows move the light, or the camera", run: () => by_id("light-drag").click() },
@@ -570,6 +584,13 @@ document.addEventListener("visibilitychange", () => {
   engine.pause(document.hidden || quit);
 });
 setInterval(() => { by_id("busy").hidden = frames.busy_for_ms() < 400; }, 200);
+start_kept({
+  link: () => link_of(store.get()),
+  words: () => [store.side().dof ? store.side().method : "sharp",
+                `f/${three_digits(store.side().f_number)}, ${metres_text(focus_m())}`],
+  canvas: () => by_id(store.get().editing === 1 ? "canvas-b" : "canvas-a"),
+  open: (link) => open_link(link),
+});
 start_tips();
 start_theme();
 start_hashes({ engine });
@@ -597,7 +618,7 @@ async function open_link(fragment) {
     if (done || opened) return;
   }
   let line = by_id("error-text").textContent;
-  if (!opened) await open({ scene: "figures" }, { words: new Map() });
+  if (!opened) await open({ scene: kFirstScene }, { words: new Map() });
   if (path && !what) {
     own_link = { path, words, wanted };
     line = `the link is of your own file ${words.get("own")}, which is not here: drop it on the page again, ` +
@@ -622,9 +643,13 @@ async function start(ready) {
   by_id("version").textContent = `softfocus ${about.version}, ${about.isa}, ` +
                                  `${about.threads === 1 ? "one thread" : `${about.threads} threads`}.`;
   by_id("build").textContent = `Build: ${build}.${lacks}`;
-  const options = listing.scenes.map(({ name, title }) => element("option", { value: name }, title ?? name));
+  const group = (label, scenes) => element("optgroup", { label }, ...scenes.map(
+      ({ name, title }) => element("option", { value: name }, title ?? name)));
+  const of_thesis = kThesisScenes.map((name) => listing.scenes.find((scene) => scene.name === name)).filter(Boolean);
   by_id("scene").replaceChildren(element("option", { value: "", hidden: "" }, "Failure case"),
-                                 ...options, element("option", { value: "random" }, "Random…"));
+                                 group("The thesis’s scenes", of_thesis),
+                                 group("Other scenes", listing.scenes.filter((scene) => !of_thesis.includes(scene))),
+                                 element("option", { value: "random" }, "Random…"));
   by_id("scene").disabled = false;
   controls.set_methods(listing.methods);
   controls.set_effects(listing.effects ?? []);

@@ -1,5 +1,7 @@
 // All that a link carries: plain data, and the request of a frame that follows from it.
 
+export const kFirstScene = "portrait";
+export const kThesisScenes = ["figures", "cube-room", "sphere-world"];
 export const kSizes = [[512, 512], [1024, 512], [1024, 1024]];
 export const kShows = ["image", "coc", "depth", "wireframe", "truth", "error"];
 export const kMaps = ["coc", "depth", "wireframe"];
@@ -29,7 +31,7 @@ const preset = (key) => parameters[key]?.preset ?? null;
 export function first_side() {
   return {
     dof: true,
-    method: "two-pass",
+    method: "disc-layers",  // as `render` without --method
     /** Metres, or a place in the picture, 0..1 from the top left. */
     focus: { m: preset("focus_m") },
     ...lens_of(preset),
@@ -46,7 +48,7 @@ export const first_look = () => (
 export function first_state() {
   return {
     /** A name, a file under /own/, or null while a failure case is open. */
-    scene: "figures",
+    scene: kFirstScene,
     failure: null,  // {name, value}
     /** Of a picture, whose file is `scene`: {depth, size, encoding, numbers,
      * choices}; see panels/picture.js. */
@@ -111,6 +113,7 @@ export function frame_request(state, side, preview, hash = true) {
     coc_scale: side.coc_scale,
     samples: side.samples,
     preview,
+    numbers: ["coc", "depth"].includes(state.show),
     hash: hash && preview === 1,
   };
   if (state.camera) request.camera = state.camera;

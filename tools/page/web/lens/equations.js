@@ -44,11 +44,10 @@ export function show_equations(numbers) {
     equation("1", "lens law", "image_distance_mm",
              "v = ", fraction("f z", "z − f"), " = ", fraction(`${f} · ${z}`, `${z} − ${f}`),
              ` = ${millimetres_text(v)}`),
-    equation("2", "circle on film", "coc_on_film_mm",
+    equation("2", `circle on film, its width; its radius is ${pixels_text(Math.abs(radius_px))}`, "coc_on_film_mm",
              "c = ", fraction("A f |z − z_f|", "z (z_f − f)"), " = ",
              fraction(`${A} · ${f} · |${z} − ${z_f}|`, `${z} · (${z_f} − ${f})`),
-             ` = ${millimetres_text(c)}`, element("span", { class: "quiet" },
-                                                  ` → r = ${pixels_text(radius_px)}`)),
+             ` = ${millimetres_text(c)}`),
     equation("3", "aperture", "aperture_mm",
              "A = ", fraction("f", "N"), " = ", fraction(f, N),
              ` = ${millimetres_text(aperture_of(lens))}`),
@@ -70,6 +69,6 @@ export function show_equations(numbers) {
     limit("Focus", metres_text(lens.focus_m), "focus"),
     limit("Sharp to", metres_text(far_m)),
     limit("Hyperfocal", H),
-    limit("Circle at ∞", pixels_text(numbers.at_infinity_px)),
-    limit("Circle of the object", pixels_text(radius_px), "object"));
+    limit("Radius at ∞", pixels_text(numbers.at_infinity_px)),
+    limit("Object’s radius", pixels_text(Math.abs(radius_px)), "object"));
 }

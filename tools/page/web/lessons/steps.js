@@ -94,7 +94,8 @@ export const kSteps = {
          watch: ({ side, frame }) => (
            frame.cut_share > 0 ? `${three_digits(100 * frame.cut_share)} % of the pixels have a circle that is cut`
            : side.max_coc_px < frame.largest_coc_px + 1 ? "no circle is cut" : "no circle is cut; smaller is enough"),
-         found: ({ side, frame }) => frame.cut_share === 0 && side.max_coc_px < frame.largest_coc_px + 1 },
+         found: ({ side, frame }) => frame.cut_share === 0 && side.max_coc_px !== null &&
+                                      side.max_coc_px < frame.largest_coc_px + 1 },
   2.3: { state: "scene=night-lights&method=two-pass&b.method=two-pass&editing=1",
          found: ({ state }) => state.sides[0].method === "two-pass" && kRound.includes(state.sides[1]?.method) },
   2.4: { state: "case=leak-far&value=16&method=scatter", truth: true, watch: flip_text,

@@ -1,7 +1,8 @@
 // The failure cases of `softfocus stress`, each as a scene with its sentence and severity.
 
-import { by_id, element } from "../dom.js";
+import { by_id, element, paint_figure } from "../dom.js";
 import { make_number } from "../numbers.js";
+import { three_digits } from "../units.js";
 
 /** `open(name, value)` opens a case. `cases` are those of the `scenes` reply. */
 export function make_cases({ cases, open }) {
@@ -26,6 +27,19 @@ export function make_cases({ cases, open }) {
   }
 
   return {
+    /** The answer beside the picture, and whether the picture holds; null hides both. */
+    show_answer(answer) {
+      const part = by_id("case-verdict");
+      paint_figure("case-answer", "The answer", answer ?? {});
+      const verdict = answer?.reply.verdict;
+      part.hidden = !verdict;
+      if (!verdict) return;
+      const { holds, value, limit, unit, measured, why } = verdict;
+      part.replaceChildren(
+        element("b", { class: holds ? "is-found" : "warning" }, holds ? "✓ It holds" : "✗ It does not hold"),
+        ` with these settings. Measured: ${measured}: ${value === null ? "all is spoilt" : three_digits(value)} ${unit}; ` +
+        `up to ${three_digits(limit)} holds: ${why}.`);
+    },
     /** Marks the open case, or none for null. */
     show(failure) {
       const changed = failure?.name !== shown?.name;

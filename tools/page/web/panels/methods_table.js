@@ -4,6 +4,7 @@ import { announce, by_id, element } from "../dom.js";
 import { kBackground } from "../engine.js";
 import { parameters } from "../state.js";
 import { ms_text } from "../units.js";
+import { draw_methods_chart } from "./methods_chart.js";
 
 /** Radii from a line of text, at most six; empty if it says none. */
 export function read_radii(text) {
@@ -21,6 +22,7 @@ export function make_methods_table({ engine, methods, truth, choose, picture_sho
   const state = by_id("measure-state");
   const results = new Map();  // "method radius" -> reply
   let radii = [];
+  let sorted = null;  // {of: "ms" or "flip_mean", radius}, or null: by names, as the list has them
   let run = 0;  // the number of the run; another number stops an older one
 
   function cells_of(name, radius) {
@@ -37,15 +39,36 @@ export function make_methods_table({ engine, methods, truth, choose, picture_sho
     return [element("td", {}, ms_text(result.ms)), error];
   }
 
+  /** The head of a column that sorts the rows when it is pressed. */
+  function column_head(words, tip, next, attributes) {
+    const is_here = JSON.stringify(next) === JSON.stringify(sorted);
+    const press = element("button", { type: "button", class: "cell", "aria-label": `${words}${tip}: sort` },
+                          `${words}${is_here && next ? " ▴" : ""}`);
+    press.addEventListener("click", () => {
+      sorted = next;
+      draw();
+      table.querySelector("[aria-sort] button").focus();
+    });
+    return element("th", { scope: "col", ...(is_here && { "aria-sort": "ascending" }), ...attributes }, press);
+  }
+
+  function in_order() {
+    if (!sorted) return methods;
+    const value = ({ name }) => results.get(`${name} ${sorted.radius}`)?.[sorted.of] ?? Infinity;
+    return methods.slice().sort((a, b) => value(a) - value(b) || 0);
+  }
+
   function draw() {
-    const head = element("tr", {}, element("th", { scope: "col", rowspan: 2 }, "Method"));
+    const head = element("tr", {}, column_head("Method", "", null, { rowspan: 2 }));
     const units = element("tr");
     for (const radius of radii) {
-      head.append(element("th", { scope: "colgroup", colspan: 2 }, `${radius} px`));
-      units.append(element("th", { scope: "col" }, "ms"), element("th", { scope: "col" }, "FLIP"));
+      head.append(element("th", { scope: "colgroup", colspan: 2 }, `radius ${radius} px`));
+      units.append(column_head("ms", ` at ${radius} px`, { of: "ms", radius }),
+                   column_head("FLIP", ` at ${radius} px`, { of: "flip_mean", radius }));
     }
+    draw_methods_chart([...results.values()].filter(({ error }) => !error), radii, choose);
     const body = element("tbody");
-    for (const { name, summary } of methods) {
+    for (const { name, summary } of in_order()) {
       const row = element("tr", {}, element("th", { scope: "row", title: summary }, name));
       for (const radius of radii) row.append(...cells_of(name, radius));
       body.append(row);
@@ -69,6 +92,7 @@ export function make_methods_table({ engine, methods, truth, choose, picture_sho
     if (!await picture_shown()) return stop("there is no picture to measure");
     if (mine !== run) return undefined;
     results.clear();
+    if (sorted && !radii.includes(sorted.radius)) sorted = null;
     draw();
     button.textContent = "Stop";
     state.textContent = "collecting the truth…";

@@ -9,11 +9,12 @@ const kTurnMs = 200;     // of one request, so that input and frames stay quick
 const kShownEvery = 16;  // views between two pictures of the growing truth
 
 /**
- * `paint(reply, pixels)` shows the truth or the error; `shown()` is "truth", "error" or null.
+ * `paint(kind, reply, pixels)` shows the truth or the error; `shown()` is "truth", "error" or null.
+ * `on_done(reply)` is told once it is good enough, with null when it is of another picture than the shown one.
  * `settled()`: whether the whole picture of the present state is there; `hindrance()`: why what is
  * shown has no truth, or null.
  */
-export function make_truth({ engine, settled, hindrance, shown, paint, on_error }) {
+export function make_truth({ engine, settled, hindrance, shown, paint, on_done, on_error }) {
   let wanted = false;
   let running = false;
   let paused = false;
@@ -47,11 +48,11 @@ export function make_truth({ engine, settled, hindrance, shown, paint, on_error 
     const kind = shown();
     if (!kind || !last) return;
     if (!force && last.samples < painted_at + kShownEvery && !last.done) return;
-    const { reply, pixels } = await engine.ask({ do: "truth", show: kind }, kAsked);
+    const { reply, pixels } = await engine.ask({ do: "truth", show: kind, numbers: true }, kAsked);
     if (reply.error) on_error(reply.error);
     else if (!reply.cancelled && pixels && shown() === kind && settled()) {
       painted_at = reply.samples ?? last.samples;
-      paint(reply, pixels);
+      paint(kind, reply, pixels);
     }
   }
 
@@ -74,7 +75,10 @@ export function make_truth({ engine, settled, hindrance, shown, paint, on_error 
       last = reply;
       tell();
       await show(painted_at < 0);
-      if (last?.done) announce("The truth is good enough.");
+      if (last?.done) {
+        announce("The truth is good enough.");
+        on_done(last);
+      }
       if (last?.done) waiting.splice(0).forEach((done) => done());
     }
     pump();
@@ -83,6 +87,7 @@ export function make_truth({ engine, settled, hindrance, shown, paint, on_error 
   return {
     /** The picture has changed; what was collected is of another one. */
     renew() {
+      if (last?.done) on_done(null);
       last = null;
       painted_at = -1;
       tell();
