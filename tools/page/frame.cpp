@@ -77,9 +77,7 @@ ShownFrame scene_frame(Page& page, const FrameSettings& settings, const Json& re
 /// what is shown is no such map.
 bool put_map_numbers(const ShownFrame& shown, Pixels& pixels) {
   const Image& picture = shown.drawn->picture();
-  const auto depth_at = [&](int x, int y) {
-    return load_texel<Format::rgba16f>(picture, x, y).w;
-  };
+  const auto depth_at = [&](int x, int y) { return load_texel<Format::rgba16f>(picture, x, y).w; };
   if (shown.settings.show == Show::depth) {
     put_numbers(picture.width, picture.height, depth_at, pixels);
     return true;

@@ -131,12 +131,10 @@ Json verdict_of(const Page& page, const ShownFrame& shown, const Image& truth) {
   const std::optional<StressTrial>& trial = shown.drawn->trial;
   if (!trial || trial->frames.size() != 1 || !page.opened->stress_case) return nullptr;
   const StressCase& of = *page.opened->stress_case;
-  const double value =
-      of.measure({*trial, page.opened->severity, std::span{&truth, 1}, std::span{&shown.picture, 1},
-                  *page.pool});
-  return {{"value", number_or_null(value)}, {"limit", of.limit},
-          {"unit", of.unit},                {"measured", of.measured},
-          {"why", of.why_limit},            {"holds", value <= of.limit}};
+  const double value = of.measure({*trial, page.opened->severity, std::span{&truth, 1},
+                                   std::span{&shown.picture, 1}, *page.pool});
+  return {{"value", number_or_null(value)}, {"limit", of.limit},   {"unit", of.unit},
+          {"measured", of.measured},        {"why", of.why_limit}, {"holds", value <= of.limit}};
 }
 
 }  // namespace
