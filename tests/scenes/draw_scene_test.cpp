@@ -134,28 +134,28 @@ TEST_CASE("a pixel across two texels has the part of its reads that lie on each"
   };
   for (const bool upright : {true, false}) {
     if (!upright) scene.meshes[0].uvs = {{1, 0}, {1, 0}, {0, 0}, {0, 0}};
-    for (const auto& [seam_px, reads, value] : {Case{0.1, 1, 0.0f},
-                                                {-0.1, 1, 1.0f},
-                                                {0.2, 2, 0.5f},
-                                                {0.3, 2, 0.0f},
-                                                {-0.3, 2, 1.0f},
-                                                {0.45, 4, 0.0f},
-                                                {0.2, 4, 0.25f},
-                                                {0.05, 4, 0.5f},
-                                                {-0.2, 4, 0.75f},
-                                                {-0.45, 4, 1.0f}}) {
+    for (const Case& one : {Case{0.1, 1, 0.0f},
+                            {-0.1, 1, 1.0f},
+                            {0.2, 2, 0.5f},
+                            {0.3, 2, 0.0f},
+                            {-0.3, 2, 1.0f},
+                            {0.45, 4, 0.0f},
+                            {0.2, 4, 0.25f},
+                            {0.05, 4, 0.5f},
+                            {-0.2, 4, 0.75f},
+                            {-0.45, 4, 1.0f}}) {
       CAPTURE(upright);
-      CAPTURE(seam_px);
-      CAPTURE(reads);
-      const double metres = seam_px / kPixelsPerMetre;
+      CAPTURE(one.seam_px);
+      CAPTURE(one.reads);
+      const double metres = one.seam_px / kPixelsPerMetre;
       scene.objects[0].position = upright ? glm::dvec3{metres, 0, 0} : glm::dvec3{0, -metres, 0};
       for (const Isa isa : available_isas()) {
         ThreadPool pool{1, isa};
         PreparedScene prepared = prepare_scene(scene, kProfile, pool);
-        prepared.texture_reads = reads;
+        prepared.texture_reads = one.reads;
         Image image = make_image(Format::rgba16f, 65, 65);
         draw_scene(prepared, camera_matrices(scene.camera, 0, 65, 65), 0, image, pool);
-        CHECK(centre(image).x == value);
+        CHECK(centre(image).x == one.value);
       }
     }
   }
@@ -206,7 +206,8 @@ TEST_CASE("a picture with edges reads its textures more than once, and is nearer
   std::vector<glm::vec3> mean(std::size_t{kSize} * kSize, glm::vec3{0.0f});
   for (int i = 0; i < kFiner * kFiner; ++i) {
     CameraMatrices view = camera_matrices(scene.camera, 0, kSize, kSize);
-    const glm::dvec2 place{(i % kFiner + 0.5) / kFiner - 0.5, (i / kFiner + 0.5) / kFiner - 0.5};
+    const int column = i % kFiner, row = i / kFiner;
+    const glm::dvec2 place{(column + 0.5) / kFiner - 0.5, (row + 0.5) / kFiner - 0.5};
     for (int axis = 0; axis < 2; ++axis) view.eye_to_clip[2][axis] += 2.0 * place[axis] / kSize;
     const Image image = draw_scene(scene, view, 0, kSize, kSize, kProfile, pool);
     for (std::size_t at = 0; at < mean.size(); ++at) {
