@@ -480,6 +480,8 @@ test("each drop is a world of its own", async (page) => {
   await page.locator("#scene").selectOption("/own/box.obj");
   await drawn(page);
   await page.waitForFunction(() => document.getElementById("error").hidden);
+  await opened(page, "box");
+  await drawn(page);
   assert.deepStrictEqual((await middle(page)).slice(0, 2), [red, green]);
 });
 
