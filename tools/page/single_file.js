@@ -76,12 +76,16 @@ function bundle(entry) {
 // backslash changes nothing.
 const harmless = (script) => script.replace(/<\/(script)/gi, "<\\/$1").replace(/<!--/g, "<\\!--");
 
+/** Emscripten's script without the comments and the indents, which are a third of it. */
+const lean = (script) => script.replace(/^\s*\/\*[\s\S]*?\*\/\s*$/gm, "").replace(/^\s*\/\/.*$/gm, "")
+    .replace(/^\s+/gm, "");
+
 /** A worker from the texts of the page: the module's script is run when it is asked for. */
 function worker_parts() {
   const wasm = zlib.deflateSync(fs.readFileSync(path.join(folder, "softfocus-simd.wasm")), { level: 9 })
       .toString("base64");
   return `<script type="text/plain" id="softfocus-wasm">${wasm}</script>
-<script type="text/plain" id="softfocus-script">${harmless(read("softfocus-simd.js"))}</script>
+<script type="text/plain" id="softfocus-script">${harmless(lean(read("softfocus-simd.js")))}</script>
 <script type="text/plain" id="softfocus-worker">${harmless(read("worker.js"))}</script>
 <script>
 (() => {
