@@ -18,7 +18,7 @@ namespace {
 // On either side of the focus plane the radius grows with the distance from it, so the nearest
 // or the farthest depth has the largest one. The radius has three roundings, at that depth and
 // at a depth between: together at most 2^-21 of it.
-constexpr float kRounding = 1.0f + 0x1p-20f;
+constexpr float kFocusMapRounding = 1.0f + 0x1p-20f;
 
 // A bound for depths from `least` to `most`, halves compared as integers. Those past infinity
 // are NaN or negative. Zero and infinity are blurred to the largest.
@@ -27,7 +27,7 @@ float radius_bound(const DofSettings& settings, std::uint32_t least, std::uint32
   const auto radius = [&](std::uint32_t depth) {
     return filter_radius(settings, half_to_float(static_cast<std::uint16_t>(depth)));
   };
-  return std::min(std::max(radius(least), radius(most)) * kRounding, settings.max_coc_px);
+  return std::min(std::max(radius(least), radius(most)) * kFocusMapRounding, settings.max_coc_px);
 }
 
 // The ranges that widen_depths() widens, empty at first.

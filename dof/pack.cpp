@@ -14,7 +14,7 @@
 namespace softfocus {
 namespace {
 
-constexpr int kRows = 8;  // that a thread takes at a time
+constexpr int kPackedRows = 8;  // that a thread takes at a time
 
 /// A row of the source, and the half of each byte where there are bytes.
 struct PackRow {
@@ -89,7 +89,7 @@ void pack(const ColourSource& colour, const DepthSource& depth, HalfRounding rou
   assert(picture.format == Format::rgba16f);
   std::array<std::uint16_t, 256> half_of_byte{};
   if (bytes_per_channel(colour.type) == 1) half_of_byte = halves_of_bytes(colour.type);
-  for_each_row(pool, picture.height, kRows, [&](int y) {
+  for_each_row(pool, picture.height, kPackedRows, [&](int y) {
     const auto at = [y](const void* first, std::ptrdiff_t row_bytes) {
       return static_cast<const std::byte*>(first) + y * row_bytes;
     };
@@ -111,7 +111,7 @@ void pack(const ColourSource& colour, const DepthSource& depth, HalfRounding rou
 
 void unpack(const ConstImageView& picture, const ColourTarget& colour, ThreadPool& pool) {
   assert(picture.format == Format::rgba16f);
-  for_each_row(pool, picture.height, kRows, [&](int y) {
+  for_each_row(pool, picture.height, kPackedRows, [&](int y) {
     const std::uint16_t* from = row<std::uint16_t>(picture, y).data();
     for (int channel = 0; channel < 3; ++channel) {
       void* const planes[] = {colour.red, colour.green, colour.blue};

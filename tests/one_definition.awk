@@ -1,6 +1,7 @@
 # Fails if two files define a type of one name: no compiler tells, and the linker joins the members of
 # both. Nor may files that may be compiled together (unit_of()) have types or constants of one name in
-# their unnamed namespaces. It reads what clang-format has laid out.
+# their unnamed namespaces, nor a constant in a function the name of one of those. It reads what
+# clang-format has laid out.
 #
 #   awk -f one_definition.awk FILE...
 #
@@ -65,4 +66,23 @@ FNR == 1 {
   define(name)
 }
 
-END { exit wrong }
+/^ +constexpr .* k[A-Z]/ && FILENAME ~ /[.]cpp$/ {
+  rest = $0
+  while (match(rest, / k[A-Z][A-Za-z0-9]* ?[={[]/)) {
+    name = substr(rest, RSTART + 1, RLENGTH - 1)
+    rest = substr(rest, RSTART + RLENGTH)
+    sub(/[^A-Za-z0-9].*/, "", name)
+    inner[unit_of(FILENAME) "'s {::" name, FILENAME ":" FNR] = 1
+  }
+}
+
+END {
+  for (key in inner) {
+    split(key, at, SUBSEP)
+    if (at[1] in defined && defined[at[1]] != substr(at[2], 1, index(at[2], ":") - 1)) {
+      print at[2] ": " at[1] " is defined in " defined[at[1]] ", too"
+      wrong = 1
+    }
+  }
+  exit wrong
+}

@@ -12,15 +12,15 @@ using Colour = std::array<double, 3>;
 
 // In equal steps from 0 to 1. Our own, after the manner of the map that FLIP's authors use:
 // about even steps of lightness.
-constexpr std::array<Colour, 9> kStops{{{0.00, 0.00, 0.00},
-                                        {0.09, 0.06, 0.25},
-                                        {0.27, 0.07, 0.43},
-                                        {0.46, 0.13, 0.50},
-                                        {0.66, 0.20, 0.48},
-                                        {0.85, 0.29, 0.40},
-                                        {0.96, 0.48, 0.36},
-                                        {0.99, 0.72, 0.48},
-                                        {0.99, 0.97, 0.75}}};
+constexpr std::array<Colour, 9> kHeatStops{{{0.00, 0.00, 0.00},
+                                            {0.09, 0.06, 0.25},
+                                            {0.27, 0.07, 0.43},
+                                            {0.46, 0.13, 0.50},
+                                            {0.66, 0.20, 0.48},
+                                            {0.85, 0.29, 0.40},
+                                            {0.96, 0.48, 0.36},
+                                            {0.99, 0.72, 0.48},
+                                            {0.99, 0.97, 0.75}}};
 
 double to_linear(double encoded) {
   return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
@@ -29,12 +29,12 @@ double to_linear(double encoded) {
 }  // namespace
 
 Colour heat_colour(double value) {
-  const double place = value > 0.0 ? std::min(value, 1.0) * (kStops.size() - 1) : 0.0;
-  const auto stop = std::min(static_cast<std::size_t>(place), kStops.size() - 2);
+  const double place = value > 0.0 ? std::min(value, 1.0) * (kHeatStops.size() - 1) : 0.0;
+  const auto stop = std::min(static_cast<std::size_t>(place), kHeatStops.size() - 2);
   const double t = place - static_cast<double>(stop);
   Colour colour{};
   for (std::size_t i = 0; i < 3; ++i) {
-    colour[i] = kStops[stop][i] + (kStops[stop + 1][i] - kStops[stop][i]) * t;
+    colour[i] = kHeatStops[stop][i] + (kHeatStops[stop + 1][i] - kHeatStops[stop][i]) * t;
   }
   return colour;
 }

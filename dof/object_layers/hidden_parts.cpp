@@ -15,7 +15,7 @@ constexpr int kVisibleRadius = 3;
 constexpr float kAsFarPx = 0.75f;
 constexpr int kHiddenTaskRows = 8, kHiddenTaskColumns = 64;
 
-constexpr std::size_t kLeft = 0, kRight = 1, kUp = 2, kDown = 3;
+constexpr std::size_t kToLeft = 0, kToRight = 1, kUpwards = 2, kDownwards = 3;
 constexpr int kStepX[] = {-1, 1, 0, 0}, kStepY[] = {0, 0, -1, 1};
 
 /// How far away, in pixels, each pixel finds a hidden surface in each direction; 0: nowhere.
@@ -54,12 +54,12 @@ void walk_row(const Planes& visible, const PictureObjects& objects, int y, Dista
   const std::uint8_t* links = &objects.links[begin];
   Walk from_left, from_right;
   for (int x = 0; x < objects.width; ++x) {
-    distances[kLeft][begin + static_cast<std::size_t>(x)] =
+    distances[kToLeft][begin + static_cast<std::size_t>(x)] =
         from_left.step(x, radii[x], x > 0 && (links[x - 1] & kLinkedRight) != 0);
   }
   for (int i = 0; i < objects.width; ++i) {
     const int x = objects.width - 1 - i;
-    distances[kRight][begin + static_cast<std::size_t>(x)] =
+    distances[kToRight][begin + static_cast<std::size_t>(x)] =
         from_right.step(i, radii[x], (links[x] & kLinkedRight) != 0);
   }
 }
@@ -74,7 +74,7 @@ void walk_columns(const Planes& visible, const PictureObjects& objects, int firs
     const std::uint8_t* above = y > 0 ? &objects.links[objects.at(first, y - 1)] : nullptr;
     for (int i = 0; i < count; ++i) {
       const auto column = static_cast<std::size_t>(i);
-      distances[kUp][at + column] =
+      distances[kUpwards][at + column] =
           walks[column].step(y, radii[i], above != nullptr && (above[i] & kLinkedDown) != 0);
     }
   }
@@ -85,7 +85,7 @@ void walk_columns(const Planes& visible, const PictureObjects& objects, int firs
     const std::uint8_t* links = &objects.links[at];
     for (int i = 0; i < count; ++i) {
       const auto column = static_cast<std::size_t>(i);
-      distances[kDown][at + column] =
+      distances[kDownwards][at + column] =
           walks[column].step(height - 1 - y, radii[i], (links[i] & kLinkedDown) != 0);
     }
   }
@@ -131,10 +131,13 @@ void mix_found(const std::array<Found, 4>& found, float radius_px, float* to,
         (one.object == nearest.object || std::fabs(one.radius_px - nearest.radius_px) <= kAsFarPx);
     weights[i] = counts ? 1.0f / static_cast<float>(one.distance) : 0.0f;
   }
-  const float all = (weights[kLeft] + weights[kRight]) + (weights[kUp] + weights[kDown]);
+  const float all =
+      (weights[kToLeft] + weights[kToRight]) + (weights[kUpwards] + weights[kDownwards]);
   const auto mean = [&](auto value) {
-    return ((weights[kLeft] * value(found[kLeft]) + weights[kRight] * value(found[kRight])) +
-            (weights[kUp] * value(found[kUp]) + weights[kDown] * value(found[kDown]))) /
+    return ((weights[kToLeft] * value(found[kToLeft]) +
+             weights[kToRight] * value(found[kToRight])) +
+            (weights[kUpwards] * value(found[kUpwards]) +
+             weights[kDownwards] * value(found[kDownwards]))) /
            all;
   };
   const float distance = static_cast<float>(nearest.distance);

@@ -14,7 +14,7 @@ namespace {
 // The standard gives them in 1/16 pixel.
 constexpr glm::ivec2 at(int x, int y) { return {16 * x, 16 * y}; }
 
-constexpr std::array<glm::ivec2, 1> kOne{at(0, 0)};
+constexpr std::array<glm::ivec2, 1> kOnePosition{at(0, 0)};
 constexpr std::array<glm::ivec2, 4> kFour{at(-2, -6), at(6, -2), at(-6, 2), at(2, 6)};
 constexpr std::array<glm::ivec2, 8> kEight{at(1, -3), at(-1, 3),  at(5, 1), at(-3, -5),
                                            at(-5, 5), at(-7, -1), at(3, 7), at(7, -7)};
@@ -25,7 +25,7 @@ std::span<const glm::ivec2> sample_places(int samples) {
   assert(samples == 1 || samples == 4 || samples == 8);
   if (samples == 4) return kFour;
   if (samples == 8) return kEight;
-  return kOne;
+  return kOnePosition;
 }
 
 int sample_reach(int samples) { return samples == 4 ? 96 : samples == 8 ? 112 : 0; }

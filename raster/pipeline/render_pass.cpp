@@ -13,14 +13,14 @@
 namespace softfocus {
 namespace {
 
-constexpr std::size_t kTexelBytes = bytes_per_texel(Format::rgba16f);
+constexpr std::size_t kTargetTexelBytes = bytes_per_texel(Format::rgba16f);
 
 // The upper left texel of an area of an RGBA16F image. AnyImage may be const.
 template <class AnyImage>
 auto* first_texel(AnyImage& image, const Rectangle& area, int samples = 1) {
   return image.bytes.data() +
          static_cast<std::size_t>(area.y_begin * samples) * image.stride_bytes +
-         static_cast<std::size_t>(area.x_begin) * kTexelBytes;
+         static_cast<std::size_t>(area.x_begin) * kTargetTexelBytes;
 }
 
 void clear_area(const RenderPass& pass, Image* image, const Rectangle& area, glm::vec4 value) {
@@ -133,7 +133,7 @@ class TileDrawing {
     if (texels_ != nullptr) {
       memory_->front.texels = texels_;
       memory_->front.stride_bytes =
-          kTexelBytes * static_cast<std::size_t>(area_.x_end - area_.x_begin);
+          kTargetTexelBytes * static_cast<std::size_t>(area_.x_end - area_.x_begin);
       return;
     }
     const auto samples = static_cast<std::size_t>(pass_.targets.samples);
@@ -149,7 +149,7 @@ class TileDrawing {
 
   void give_edges_texels() {
     VisibilityTile& tile = *memory_;
-    constexpr std::size_t kSampleBytes = kTilePixels * kTexelBytes;
+    constexpr std::size_t kSampleBytes = kTilePixels * kTargetTexelBytes;
     const std::size_t bytes = tile.edge_samples * kSampleBytes;
     if (tile.edge_texels_room < bytes) {
       tile.edge_texels.reset(new std::byte[bytes]);  // not zeroed
@@ -157,7 +157,7 @@ class TileDrawing {
     }
     for (std::size_t s = 0; s < tile.edge_samples; ++s) {
       tile.layer(tile.layers + s).texels = tile.edge_texels.get() + s * kSampleBytes;
-      tile.layer(tile.layers + s).stride_bytes = kTileSize * kTexelBytes;
+      tile.layer(tile.layers + s).stride_bytes = kTileSize * kTargetTexelBytes;
     }
   }
 
@@ -263,7 +263,7 @@ void draw_tile_aside(const RenderPass& pass, const TileLists& lists, int tile, T
     return;
   }
   draw_tile(pass, lists, tile, memory);
-  const std::size_t row_bytes = kTexelBytes * static_cast<std::size_t>(width);
+  const std::size_t row_bytes = kTargetTexelBytes * static_cast<std::size_t>(width);
   const Image& target = *pass.targets.colour[0];
   const std::byte* from = first_texel(target, area);
   for (int y = area.y_begin; y < area.y_end; ++y) {

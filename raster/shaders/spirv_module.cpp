@@ -13,7 +13,7 @@ namespace {
 
 using Operands = std::span<const std::uint32_t>;
 
-constexpr std::uint32_t kMagic = 0x07230203, kSwappedMagic = 0x03022307;
+constexpr std::uint32_t kSpirvMagic = 0x07230203, kSwappedMagic = 0x03022307;
 constexpr std::uint32_t kMostIds = 1u << 22;
 
 std::uint32_t with_bytes_swapped(std::uint32_t word) {
@@ -99,7 +99,8 @@ class Reader {
 
   void read() {
     const Operands words = module_.words;
-    if (words.size() < 5 || words[0] != kMagic) damaged_words("it does not begin as SPIR-V does");
+    if (words.size() < 5 || words[0] != kSpirvMagic)
+      damaged_words("it does not begin as SPIR-V does");
     if (words.size() > kMostSpirvWords) {
       throw ShaderError("the shader has " + std::to_string(words.size()) + " words; " +
                         std::to_string(kMostSpirvWords) + " are the most");

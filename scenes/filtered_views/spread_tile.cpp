@@ -12,7 +12,7 @@ namespace softfocus {
 namespace {
 
 constexpr std::size_t kSpreadTexelHalves = 4;
-constexpr std::ptrdiff_t kPlane = std::ptrdiff_t{kSpreadRows} * kSpreadStride;
+constexpr std::ptrdiff_t kSpreadPlane = std::ptrdiff_t{kSpreadRows} * kSpreadStride;
 constexpr std::ptrdiff_t kSumPlane = std::ptrdiff_t{kSpreadTile} * kSpreadTile;
 
 // The first cell of a tile among those around it.
@@ -68,7 +68,7 @@ void unpack(const std::uint16_t* texels, int count, const UnpackedRow& to, Isa i
 UnpackedRow row_at(SpreadMemory& memory, int x, int y) {
   const std::ptrdiff_t at = y * std::ptrdiff_t{kSpreadStride} + x;
   float* first = memory.colours.get() + at;
-  return {first, first + kPlane, first + 2 * kPlane, memory.levels.get() + at};
+  return {first, first + kSpreadPlane, first + 2 * kSpreadPlane, memory.levels.get() + at};
 }
 
 void repeat_pixel(SpreadMemory& memory, int from_x, int to_x, int count, int y) {
@@ -145,7 +145,7 @@ void spread_cell_scalar(const CellWork& cell) {
         const std::ptrdiff_t from =
             source_scalar(cell, cell.offsets + std::ptrdiff_t{ray} * kSpreadLevels, at);
         for (int c = 0; c < 3; ++c) {
-          const float colour = cell.colours[c * kPlane + from];
+          const float colour = cell.colours[c * kSpreadPlane + from];
           sum[c] = ray == 0 ? colour : sum[c] + colour;
         }
       }
@@ -162,7 +162,7 @@ void spread_cell_scalar(const CellWork& cell) {
 void add_cell_scalar(const CellWork& cell) {
   for (int c = 0; c < 3; ++c) {
     for (int y = 0; y < cell.rows; ++y) {
-      const float* from = cell.colours + c * kPlane + y * std::ptrdiff_t{kSpreadStride};
+      const float* from = cell.colours + c * kSpreadPlane + y * std::ptrdiff_t{kSpreadStride};
       float* to = cell.sums + c * kSumPlane + y * std::ptrdiff_t{kSpreadTile};
       for (int x = 0; x < cell.width; ++x) to[x] = cell.begin ? from[x] : to[x] + from[x];
     }
@@ -174,8 +174,8 @@ void add_cell_scalar(const CellWork& cell) {
 SpreadMemory make_spread_memory() {
   // Lanes read and write whole vectors past the last pixel.
   SpreadMemory memory;
-  memory.colours = make_row_memory<float>(3 * kPlane + kMostLanes);
-  memory.levels = make_row_memory<std::int32_t>(kPlane + kMostLanes);
+  memory.colours = make_row_memory<float>(3 * kSpreadPlane + kMostLanes);
+  memory.levels = make_row_memory<std::int32_t>(kSpreadPlane + kMostLanes);
   memory.sums = make_row_memory<float>(3 * kSumPlane + kMostLanes);
   memory.runs = std::make_unique<RayRuns>();
   return memory;
@@ -258,7 +258,7 @@ struct Colours {
 };
 
 SOFTFOCUS_INLINE Colours load_colours(const float* from) {
-  return {load(from), load(from + kPlane), load(from + 2 * kPlane)};
+  return {load(from), load(from + kSpreadPlane), load(from + 2 * kSpreadPlane)};
 }
 
 // Colours of the lanes that are left, whose levels are nowhere.
@@ -270,8 +270,8 @@ SOFTFOCUS_INLINE Colours beside(const CellWork& cell, const std::int32_t* offset
   const Ints level = gather(cell.levels, moved, left);
   const Ints from = select(level > own, moved, places);
   return {select(left, gather(cell.colours, from, left), others.r),
-          select(left, gather(cell.colours + kPlane, from, left), others.g),
-          select(left, gather(cell.colours + 2 * kPlane, from, left), others.b)};
+          select(left, gather(cell.colours + kSpreadPlane, from, left), others.g),
+          select(left, gather(cell.colours + 2 * kSpreadPlane, from, left), others.b)};
 }
 
 SOFTFOCUS_INLINE void add(Colours& sum, const Colours& more) {

@@ -12,7 +12,7 @@
 namespace softfocus {
 namespace {
 
-constexpr int kMostCells = 1024;
+constexpr int kMostCellsAcross = 1024;
 
 // Most entries of a caster on average. Casters that each fill the light's view get fewer, larger
 // cells: the memory stays a multiple of the casters'.
@@ -243,7 +243,7 @@ LightGrid make_light_grid(const Facets& facets, const ShadowLight& light, Thread
   grid.facets = facets.facets.size();
   grid.all = casters_of(facets, light, pool);
   const double per_side = static_cast<double>(grid.all.size()) / (grid.sides == 1 ? 0.5 : 1.5);
-  grid.cells = std::clamp(static_cast<int>(std::sqrt(per_side)), 1, kMostCells);
+  grid.cells = std::clamp(static_cast<int>(std::sqrt(per_side)), 1, kMostCellsAcross);
   if (grid.sides == 1) set_side(grid, facets.facets, grid.all);
   const std::size_t most = kMostEntries * (grid.all.size() + 1);
   const auto rows_of_cells = [&] {

@@ -15,7 +15,7 @@ namespace softfocus {
 namespace {
 
 // A task's rows of pixels: no cell is higher.
-constexpr int kBandRows = kLargestSplatCell;
+constexpr int kSplatBandRows = kLargestSplatCell;
 static_assert(1 << (kSplatLevels - 1) == kLargestSplatCell);
 
 // Points that a cell's side has at least, if its circle leaves it a choice.
@@ -94,13 +94,13 @@ int margin_of_level(int level) {
 }
 
 Band make_band(const SplatCamera& camera, int number) {
-  Band band{number * kBandRows, {}, {}};
+  Band band{number * kSplatBandRows, {}, {}};
   for (int level = 1; level < kSplatLevels; ++level) {
     CellGrid& grid = band.grids[static_cast<std::size_t>(level)];
     const int margin = margin_of_level(level);
     grid.first = -(margin >> level) - 1;
     grid.columns = ((camera.width + margin) >> level) + 1 - grid.first;
-    const auto cells = static_cast<std::size_t>(grid.columns * (kBandRows >> level));
+    const auto cells = static_cast<std::size_t>(grid.columns * (kSplatBandRows >> level));
     grid.slots.resize(cells);
   }
   return band;
@@ -255,11 +255,11 @@ void add_triangle(const PointSource& source, const SeenTriangle& seen, Band& ban
   int step = 1;  // wider than a pixel if all of it is so blurred
   while (2 * step * kPointsAcross <= 1 << seen.least_level) step *= 2;
   const int top = std::max(seen.top_px, band.top_px);
-  const int bottom = std::min(seen.bottom_px, band.top_px + kBandRows);
+  const int bottom = std::min(seen.bottom_px, band.top_px + kSplatBandRows);
   if (top >= bottom) return;
   const int begin = static_cast<int>(floor_quotient(top, step));
   const int end = static_cast<int>(floor_quotient(bottom - 1, step)) + 1;
-  std::array<Span, kBandRows> spans;
+  std::array<Span, kSplatBandRows> spans;
   for (int row = begin; row < end; ++row) {
     spans[static_cast<std::size_t>(row - begin)] = span_of_row(seen, row, step);
   }
@@ -290,7 +290,7 @@ void add_background(const PointSource& source, std::uint32_t surface, glm::vec3 
   const float radius = camera.radius_px(inverse);
   const int cell = splat_cell_px(radius), margin = static_cast<int>(splat_reach_px(radius)) + 1;
   const int step = std::max(cell / kPointsAcross, 1);
-  const int end = std::min(band.top_px + kBandRows, camera.height + margin);
+  const int end = std::min(band.top_px + kSplatBandRows, camera.height + margin);
   for (int top = band.top_px; top < end; top += cell) {
     if (top + cell < -margin) continue;
     for (int left = -((margin + cell - 1) / cell) * cell; left < camera.width + margin;
@@ -323,14 +323,14 @@ std::vector<Splat> surface_splats(const LensViewInput& input, ThreadPool& pool) 
   const std::vector<SeenMesh> meshes = seen_meshes(input);
   const Farthest farthest = farthest_of(input.pinhole);
   const std::vector<SeenTriangle> triangles = seen_triangles(camera, meshes);
-  const int margin = margin_of_level(kSplatLevels - 1) / kBandRows + 1;
-  const int bands = (camera.height + kBandRows - 1) / kBandRows + 2 * margin;
+  const int margin = margin_of_level(kSplatLevels - 1) / kSplatBandRows + 1;
+  const int bands = (camera.height + kSplatBandRows - 1) / kSplatBandRows + 2 * margin;
   std::vector<std::vector<Splat>> found(static_cast<std::size_t>(bands));
   const PointSource source{camera, meshes, farthest, input.profile};
   pool.for_each(bands, [&](int number) {
     Band band = make_band(camera, number - margin);
     for (const SeenTriangle& seen : triangles) {
-      if (seen.top_px < band.top_px + kBandRows && seen.bottom_px > band.top_px) {
+      if (seen.top_px < band.top_px + kSplatBandRows && seen.bottom_px > band.top_px) {
         add_triangle(source, seen, band);
       }
     }

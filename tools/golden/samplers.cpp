@@ -31,7 +31,7 @@ constexpr std::array kWraps{Wrap::repeat, Wrap::mirrored_repeat, Wrap::clamp_to_
 
 // One a power of two, one not.
 constexpr std::array kWidths{16, 13};
-constexpr int kHeight = 8;
+constexpr int kSampledHeight = 8;
 constexpr int kFetches = 64;
 
 // Which NaN an operation gives differs between processors (half.h).
@@ -59,9 +59,9 @@ float random_float(RandomSequence& random) {
 
 // Colours from 0 to 1 on the left, any float on the right.
 Texture random_texture(Format format, int width, const Profile& profile) {
-  Image image = make_image(format, width, kHeight);
+  Image image = make_image(format, width, kSampledHeight);
   RandomSequence random{static_cast<std::uint64_t>(width)};
-  for (int y = 0; y < kHeight; ++y) {
+  for (int y = 0; y < kSampledHeight; ++y) {
     for (int x = 0; x < width; ++x) {
       glm::vec4 texel{};
       for (int i = 0; i < 4; ++i) {

@@ -15,7 +15,7 @@ namespace {
 
 /// Marks the JSON; its value is the version of the form.
 constexpr const char* kMark = "softfocus_picture";
-constexpr int kForm = 1;
+constexpr int kNotesForm = 1;
 constexpr const char* kKeyword = "softfocus";
 /// No notes are longer: larger files are not read for being taken for some.
 constexpr std::size_t kMostBytes = 65536;
@@ -97,7 +97,7 @@ void add_lens(Json& json, const ThinLens& lens, double coc_scale) {
 }
 
 Json notes_json(const PictureNotes& notes) {
-  Json json{{kMark, kForm},
+  Json json{{kMark, kNotesForm},
             {"softfocus", SOFTFOCUS_VERSION},
             {"scene", notes.scene},
             {"frame", notes.frame},
@@ -119,7 +119,7 @@ std::optional<PictureNotes> parse_notes(std::string_view text) {
   const std::optional<Json> json = parse_json(text);
   if (!json || !json->is_object() || json->find(kMark) == nullptr) return std::nullopt;
   try {
-    if (json->at(kMark).integer() != kForm) return std::nullopt;
+    if (json->at(kMark).integer() != kNotesForm) return std::nullopt;
     PictureNotes notes = notes_of(*json);
     if (!is_usable(notes)) return std::nullopt;
     return notes;

@@ -13,7 +13,7 @@ namespace softfocus {
 namespace {
 
 constexpr std::size_t kFrame = 12;  // of a chunk: length, type, CRC
-constexpr std::size_t kHeaderEnd = 8 + kFrame + 13;
+constexpr std::size_t kPngHeaderEnd = 8 + kFrame + 13;
 constexpr std::uint32_t kIhdr = 0x49484452, kIend = 0x49454E44;
 
 constexpr std::array<std::uint32_t, 256> kCrcOfByte = [] {
@@ -132,7 +132,7 @@ std::span<const std::byte> find_png_chunk(std::span<const std::byte> png, std::s
 
 std::vector<std::byte> with_png_texts(std::span<const std::byte> png,
                                       const std::vector<PngText>& texts) {
-  std::vector<std::byte> result{png.begin(), png.begin() + kHeaderEnd};
+  std::vector<std::byte> result{png.begin(), png.begin() + kPngHeaderEnd};
   for (const auto& [keyword, text] : texts) {
     const bool plain = std::all_of(text.begin(), text.end(),
                                    [](char c) { return c >= ' ' && c <= '~' && c != '"'; });
@@ -141,7 +141,7 @@ std::vector<std::byte> with_png_texts(std::span<const std::byte> png,
     append_png_chunk(result, plain ? "tEXt" : "iTXt",
                      std::string{keyword}.append(ends).append(text));
   }
-  result.insert(result.end(), png.begin() + kHeaderEnd, png.end());
+  result.insert(result.end(), png.begin() + kPngHeaderEnd, png.end());
   return result;
 }
 

@@ -10,13 +10,13 @@
 namespace softfocus {
 namespace {
 
-constexpr const char* kOption = "--sharp-depths";
-constexpr const char* kWanted =
+constexpr const char* kSharpDepthsOption = "--sharp-depths";
+constexpr const char* kSharpDepthsWanted =
     "ranges of metres above 0 (at most 1e9) as NEAR:FAR[,NEAR:FAR...], NEAR before FAR, such as "
     "1:1.5,4:6";
 
 [[noreturn]] void refuse(const std::string& text) {
-  throw UsageError(std::string{kOption} + " '" + text + "': give " + kWanted);
+  throw UsageError(std::string{kSharpDepthsOption} + " '" + text + "': give " + kSharpDepthsWanted);
 }
 
 SharpDepthRange parse_range(const std::string& range, const std::string& text) {
@@ -24,7 +24,7 @@ SharpDepthRange parse_range(const std::string& range, const std::string& text) {
   if (colon == range.npos) refuse(text);
   const auto metres = [&](const std::string& number) {
     try {
-      return parse_parameter(kOption, number, parameter::kFocus);
+      return parse_parameter(kSharpDepthsOption, number, parameter::kFocus);
     } catch (const UsageError&) {  // which knows a part of the value alone
       refuse(text);
     }
@@ -37,7 +37,7 @@ SharpDepthRange parse_range(const std::string& range, const std::string& text) {
 }  // namespace
 
 void add_sharp_depths_option(CLI::App& parser, std::vector<SharpDepthRange>& ranges) {
-  add_value(parser, kOption, "NEAR:FAR[,...]",
+  add_value(parser, kSharpDepthsOption, "NEAR:FAR[,...]",
             "Of generalised-diffusion: ranges in metres that are sharp, all of them at once "
             "(default: the lens's focus alone)",
             [&ranges](const std::string& text) {
@@ -50,19 +50,21 @@ void add_sharp_depths_option(CLI::App& parser, std::vector<SharpDepthRange>& ran
 }
 
 void check_sharp_depths(const CLI::App& parser, const MethodChoice& method, bool shows_image) {
-  if (!is_given(parser, kOption)) return;
+  if (!is_given(parser, kSharpDepthsOption)) return;
   if (method.filter == nullptr || !method.filter->takes_radii) {
     std::string takers;
     for (const Method& taker : methods()) {
       if (!taker.takes_radii) continue;
       takers += (takers.empty() ? "" : ", ") + std::string{taker.name};
     }
-    throw UsageError(std::string{kOption} + ": the method " + std::string{method.name()} +
-                     " blurs as the lens does; give --method " + takers);
+    throw UsageError(std::string{kSharpDepthsOption} + ": the method " +
+                     std::string{method.name()} + " blurs as the lens does; give --method " +
+                     takers);
   }
-  check_one_of(parser, {kOption, "--focus", "--autofocus"});
+  check_one_of(parser, {kSharpDepthsOption, "--focus", "--autofocus"});
   if (!shows_image) {
-    throw UsageError(std::string{kOption} + ": --show has maps of the lens alone; leave one out");
+    throw UsageError(std::string{kSharpDepthsOption} +
+                     ": --show has maps of the lens alone; leave one out");
   }
 }
 
@@ -73,7 +75,7 @@ std::vector<SharpDepths> sharp_depths(const std::vector<SharpDepthRange>& ranges
     ThinLens focused = lens;
     focused.focus_m = depth_m;
     if (const char* error = lens_error(focused)) {
-      throw UsageError(std::string{kOption} + ", " + short_number(depth_m) +
+      throw UsageError(std::string{kSharpDepthsOption} + ", " + short_number(depth_m) +
                        " m (the focal length is " + short_number(lens.focal_length_mm) +
                        " mm): " + error);
     }

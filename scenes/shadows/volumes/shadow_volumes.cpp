@@ -8,20 +8,20 @@
 namespace softfocus {
 namespace {
 
-constexpr std::uint32_t kNone = ~std::uint32_t{0};
+constexpr std::uint32_t kNoNumber = ~std::uint32_t{0};
 
 // Numbers things in the order in which they first come. Linear probing; at most half full.
 template <class Thing>
 class Numbers {
  public:
-  explicit Numbers(std::size_t most) : slots_(std::bit_ceil(2 * most + 1), kNone) {}
+  explicit Numbers(std::size_t most) : slots_(std::bit_ceil(2 * most + 1), kNoNumber) {}
 
   std::uint32_t number_of(const Thing& thing, std::uint64_t hash, std::vector<Thing>& things) {
     std::size_t slot = (hash ^ hash >> 32) & (slots_.size() - 1);
-    while (slots_[slot] != kNone && things[slots_[slot]] != thing) {
+    while (slots_[slot] != kNoNumber && things[slots_[slot]] != thing) {
       slot = (slot + 1) & (slots_.size() - 1);
     }
-    if (slots_[slot] == kNone) {
+    if (slots_[slot] == kNoNumber) {
       slots_[slot] = static_cast<std::uint32_t>(things.size());
       things.push_back(thing);
     }
