@@ -24,6 +24,9 @@ inline constexpr Parameter kMaxTime{"max-time",
     "Of auto: the most accurate method that two cores of the reference machine should do in this "
     "time, beside drawing",
     0.0, kLargest, 0.0, "milliseconds", "MS"};
+inline constexpr Parameter kApertureBlades{"aperture-blades",
+    "Straight blades of the aperture, 3 to 64; 0: it is round",
+    0, kMostApertureBlades, 0, "", "N", "aperture_blades", 1};
 inline constexpr Parameter kApertureTurn{"aperture-turn",
     "Turns the blades counter-clockwise; without, a corner is up",
     -360.0, 360.0, 0.0, "degrees", "DEGREES"};

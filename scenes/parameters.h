@@ -16,6 +16,10 @@ inline constexpr Parameter kFrame{"frame", "Frame of the animation",
 inline constexpr Parameter kShutter{"shutter",
     "Of accumulation: how long the shutter is open, half of it before the frame's time",
     0.0, 64.0, 0.0, "frames", "FRAMES"};
+inline constexpr Parameter kBackdrop{"backdrop",
+    "Distance of a portrait's backdrop, to its nearest object; it grows with it, and looks as large "
+    "from where the scene has its camera",
+    0.01, 1e6, 0.0, "m", "METRES", "backdrop_m"};
 
 // --- lights with shadows ---
 inline constexpr Parameter kShadowDarkness{"shadow-darkness",

@@ -179,6 +179,12 @@ inline bool moves(const Object& object) {
          object.sway != glm::dvec3{0.0};
 }
 
+/// What stands far behind the subject: objects whose positions are farther from `eye` than that.
+struct Backdrop {
+  glm::dvec3 eye{0.0};
+  double beyond_m = 0.0;
+};
+
 /// As many halves can be added in binary64 without a rounding (draw/light_points.h).
 inline constexpr int kMostLightPoints = 4096;
 inline constexpr int kUsualLightPoints = 16;
@@ -196,6 +202,7 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Mesh> meshes;
   std::vector<Object> objects;
+  std::optional<Backdrop> backdrop;  ///< one object at least is of it
   ImpostorBudget impostors;
   std::vector<ChosenEffect> effects;  ///< on the finished picture
   /// What was missing, a line each: a model's texture, say.
@@ -206,5 +213,13 @@ struct Scene {
 };
 
 std::size_t triangle_count(const Scene& scene);
+
+/// From the eye to the nearest object of the backdrop; none in a scene without.
+std::optional<double> backdrop_distance_m(const Scene& scene);
+
+/// Moves the backdrop of a scene that has one so far, and scales it: from the eye it looks the
+/// same. The camera sees as much farther. What comes nearer than `beyond_m` is no backdrop any
+/// more.
+void set_backdrop(Scene& scene, double distance_m);
 
 }  // namespace softfocus

@@ -196,6 +196,22 @@ ImpostorBudget read_impostors(Section section) {
   return budget;
 }
 
+void read_backdrop(Section section, Scene& scene) {
+  if (section.table == nullptr) return;
+  for (const char* key : {"eye", "beyond_m"}) {
+    if (!has_key(section, key))
+      fail_at(section, key, "is missing; docs/scene-format.md has both keys");
+  }
+  Backdrop& backdrop = scene.backdrop.emplace();
+  backdrop.eye = read_vector(section, "eye", {}, kAnyPlace);
+  backdrop.beyond_m = read_number(section, "beyond_m", 0.0, kAnySize);
+  if (!backdrop_distance_m(scene)) {
+    fail_at(section, "beyond_m",
+            "leaves no object; a distance from eye that some are beyond would be right");
+  }
+  finish_section(section);
+}
+
 ChosenEffect read_effect(Section& section) {
   const std::string name = read_text(section, "name", "");
   const Effect* const effect = find_effect(name);
@@ -249,6 +265,7 @@ Scene read_scene_text(std::string_view text, const std::filesystem::path& file, 
   const NamedSurfaces surfaces = read_surfaces(top, file.parent_path(), scene, pool);
   scene.impostors = read_impostors(read_section(top, "impostors"));
   read_objects(top, file.parent_path(), surfaces, scene, pool);
+  read_backdrop(read_section(top, "backdrop"), scene);
   finish_section(top);
   return scene;
 }
@@ -323,6 +340,31 @@ Scene load_scene(std::string_view scene, const std::vector<std::filesystem::path
                                   [&](const SceneListing& l) { return l.name == scene; });
   if (found == listings.end()) fail_unknown(scene, listings);
   return read_scene_file(found->file, pool);
+}
+
+std::optional<double> backdrop_distance_m(const Scene& scene) {
+  std::optional<double> nearest;
+  if (!scene.backdrop) return nearest;
+  const auto& [eye, beyond_m] = *scene.backdrop;
+  for (const Object& object : scene.objects) {
+    const glm::dvec3 way = object.position - eye;
+    const double distance_m = std::sqrt(dot(way, way));
+    if (distance_m > beyond_m) nearest = std::min(nearest.value_or(distance_m), distance_m);
+  }
+  return nearest;
+}
+
+void set_backdrop(Scene& scene, double distance_m) {
+  const auto& [eye, beyond_m] = scene.backdrop.value();
+  const double factor = distance_m / backdrop_distance_m(scene).value();
+  for (Object& object : scene.objects) {
+    const glm::dvec3 way = object.position - eye;
+    if (std::sqrt(dot(way, way)) <= beyond_m) continue;
+    object.position = eye + factor * way;
+    object.scale *= factor;
+    object.sway *= factor;
+  }
+  scene.camera.far_m *= std::max(factor, 1.0);
 }
 
 std::size_t triangle_count(const Scene& scene) {

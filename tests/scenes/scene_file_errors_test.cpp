@@ -30,8 +30,8 @@ TEST_CASE("a key of too many parts is an error with its line, and dots in texts 
 TEST_CASE("every unknown key is an error that names the line and the keys there are") {
   CHECK(complaint("title = \"x\"\ntitel = \"y\"\n") ==
         "a.toml:2: titel: there is no such key; here are title, background, ambient_light, "
-        "camera, lens, light_points, light, effect, texture, material, impostors, object and "
-        "scatter; did you mean 'title'?");
+        "camera, lens, light_points, light, effect, texture, material, impostors, object, "
+        "scatter and backdrop; did you mean 'title'?");
   CHECK(contains(complaint("mm = 1\nzz = 2\naa = 3\n"), "a.toml:1: mm: there is no such key"));
   CHECK(complaint("[lens]\nfocus_m = 2\nfocus = 3\n") ==
         "a.toml:3: lens.focus: there is no such key; here are focus_m, focal_length_mm, "

@@ -231,6 +231,36 @@ TEST_CASE("an object may be an impostor, within a budget") {
                  "is of an object that moves"));
 }
 
+TEST_CASE("a backdrop moves away from the eye and grows, and what is before it stays") {
+  const std::string cube = "[[object]]\nmaterial = \"m\"\nshape = \"cube\"\n";
+  const std::string objects = std::string{kMaterial} + cube + "position = [0, 1, 0]\n" + cube +
+                              "position = [3, 1, -4]\nscale = [1, 2, 3]\nsway = [1, 0, 0]\n" +
+                              cube + "position = [0, 1, -9]\n";
+  const std::string section = "[backdrop]\neye = [0, 1, 0.5]\nbeyond_m = 2\n";
+  CHECK_FALSE(backdrop_distance_m(read(objects)));
+  Scene scene = read(section + objects);
+  const Scene before = scene;
+  const double distance_m = std::sqrt(9.0 + 20.25);
+  CHECK(backdrop_distance_m(scene).value() == distance_m);
+  set_backdrop(scene, 2.0 * distance_m);
+  CHECK(backdrop_distance_m(scene).value() == doctest::Approx(2.0 * distance_m));
+  CHECK(scene.objects[0].position == before.objects[0].position);
+  CHECK(scene.objects[0].scale == before.objects[0].scale);
+  CHECK(scene.objects[1].position == glm::dvec3{6, 1, -8.5});
+  CHECK(scene.objects[1].scale == glm::dvec3{2, 4, 6});
+  CHECK(scene.objects[1].sway == glm::dvec3{2, 0, 0});
+  CHECK(scene.objects[2].position == glm::dvec3{0, 1, -18.5});
+  CHECK(scene.camera.far_m == 2.0 * before.camera.far_m);
+  set_backdrop(scene, distance_m);
+  CHECK(scene.objects[1].position == glm::dvec3{3, 1, -4});
+  CHECK(scene.camera.far_m == 2.0 * before.camera.far_m);
+
+  CHECK(complaint("[backdrop]\neye = [0, 0, 0]\n" + objects) ==
+        "a.toml:1: backdrop.beyond_m: is missing; docs/scene-format.md has both keys");
+  CHECK(contains(complaint("[backdrop]\neye = [0, 0, 0]\nbeyond_m = 40\n" + objects),
+                 "a.toml:3: backdrop.beyond_m: leaves no object"));
+}
+
 TEST_CASE("an object stands and moves as its table says") {
   const Scene scene = read(object(R"(
 shape = "cube"

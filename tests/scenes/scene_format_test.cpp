@@ -23,6 +23,7 @@ const std::map<std::string, std::string> kScenes{
     {"`[camera]`", "[camera]\n%"},
     {"`[lens]`", "[lens]\n%"},
     {"`[impostors]`", "[impostors]\n%"},
+    {"`[backdrop]`", "[backdrop]\neye = [0, 0, 9]\nbeyond_m = 2\n%" + object("shape = \"cube\"\n")},
     {"`[[light]]`", "[[light]]\nkind = \"directional\"\ndirection = [0, 1, 0]\n%"},
     {"`map`", "[[light]]\nkind = \"directional\"\ndirection = [0, 1, 0]\n[light.map]\n%"},
     {"`[texture.NAME]`",
@@ -157,7 +158,7 @@ TEST_CASE("docs/scene-format.md: ranges are the program's") {
       CAPTURE(row[0]);
       std::string value{kTooMuch};
       if (row[1].starts_with("[0, ") || row[1].starts_with("[1, ") || row[1].starts_with("[-1") ||
-          row[0] == "direction" || row[0] == "position" || row[0] == "diffuse" ||
+          row[0] == "direction" || row[0] == "position" || row[0] == "eye" || row[0] == "diffuse" ||
           row[0] == "ambient" || row[0] == "ambient_light") {
         const auto commas = std::count(row[1].begin(), row[1].end(), ',');
         value = between("[", value, commas == 1 ? ", 1]" : ", 1, 1]");

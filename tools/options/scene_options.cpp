@@ -68,6 +68,7 @@ void add_look_options(CLI::App& parser, SceneLook& look) {
              "Objects as relief impostors where that costs less, or as geometry (default: as the "
              "scene says of each)",
              parameter::kImpostorUses, look.impostors);
+  add_parameter(parser, parameter::kBackdrop, "the scene's", look.backdrop_m);
 }
 
 void set_look(const SceneLook& look, Scene& scene) {
@@ -85,6 +86,13 @@ void set_look(const SceneLook& look, Scene& scene) {
   }
   if (look.impostors) {
     for (Object& object : scene.objects) object.impostor = *look.impostors;
+  }
+  if (look.backdrop_m) {
+    if (!scene.backdrop) {
+      throw UsageError("--backdrop: '" + scene.name +
+                       "' has no backdrop; a scene's file says by [backdrop] what it is");
+    }
+    set_backdrop(scene, *look.backdrop_m);
   }
   if (look.textures) return;
   for (Material& material : scene.materials) material.texture.reset();

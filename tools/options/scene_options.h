@@ -19,14 +19,16 @@ struct SceneLook {
   std::optional<ImpostorUse> impostors{};  ///< of all objects
   std::optional<glm::vec3> light{};        ///< the first light: towards it, or where it is
   bool textures = true;
+  std::optional<double> backdrop_m{};  ///< as set_backdrop() has it
 
   bool operator==(const SceneLook&) const = default;
 };
 
-/// Adds --shadows, --light, --textures and --impostors.
+/// Adds --shadows, --light, --textures, --impostors and --backdrop.
 void add_look_options(CLI::App& parser, SceneLook& look);
 
-/// Throws UsageError for more lights than can have shadows, and where there is no light.
+/// Throws UsageError for more lights than can have shadows, and where there is no light or
+/// backdrop.
 void set_look(const SceneLook& look, Scene& scene);
 
 /// X,Y,Z that are not all next to 0: squares of these are no subnormals.

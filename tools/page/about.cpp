@@ -71,14 +71,18 @@ Json methods_json() {
     list.push_back({{"name", method.name},
                     {"summary", method.summary},
                     {"kind", "filter"},
-                    {"samples", false}});
+                    {"samples", false},
+                    {"blades", method.name == kApertureMethod},
+                    {"stretch", method.name == kApertureMethod}});
   }
   for (const LensViewMethod& method : lens_view_methods()) {
     if (!method.missing.empty()) continue;
     list.push_back({{"name", method.name},
                     {"summary", method.summary},
                     {"kind", "views"},
-                    {"samples", method.samples_lens}});
+                    {"samples", method.samples_lens},
+                    {"blades", method.samples_lens},
+                    {"stretch", false}});
   }
   return list;
 }

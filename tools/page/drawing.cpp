@@ -57,6 +57,7 @@ void set_case_lens(UsedLens& used, const SceneLens& stands_for, const Drawn& dra
                    const FrameSettings& settings, const Shot& shot, ThreadPool& pool) {
   const StressFrame& frame = *drawn.trial_frame;
   used.settings = frame.settings;
+  used.settings.aperture = used_aperture(settings);
   const auto focus_m = static_cast<double>(frame.settings.coc.focus_m);
   if (!settings.focus_at) {
     used.lens.focus_m = focus_m * (used.lens.focus_m / stands_for.lens.focus_m);
@@ -78,6 +79,7 @@ ShotLens asked_lens(const Scene& scene, const FrameSettings& settings) {
   ShotLens asked{overruled(lens_at(scene.lens, settings.frame), settings.lens),
                  settings.lens.coc_scale.value_or(scene.lens.coc_scale)};
   if (settings.focus_at) asked.focus_at = pixel_at(*settings.focus_at, width, height);
+  asked.settings.aperture = used_aperture(settings);
   asked.settings.max_coc_px = used_max_coc_px(settings.max_coc_px, scene.lens, height);
   asked.cuts_no_circle =
       settings.show == Show::image && settings.method.takes_any_radius() && !settings.max_coc_px;
@@ -105,6 +107,7 @@ void set_look(Page& page, const SceneLook& look) {
   scene.lights = opened.lights;
   scene.materials = opened.materials;
   scene.objects = opened.objects;
+  scene.camera = opened.camera;
   try {
     set_look(look, scene);
   } catch (const UsageError&) {
@@ -112,11 +115,13 @@ void set_look(Page& page, const SceneLook& look) {
     scene.materials = opened.materials;
     scene.objects = opened.objects;
     opened.look = {};
+    opened.far_m = opened.camera.far_m;
     forget_scene(page);
     throw;
   }
   if (moved != opened.look || has_impostors(scene)) forget_scene(page);
   opened.look = look;
+  opened.far_m = scene.camera.far_m;
 }
 
 std::vector<ChosenEffect> asked_effects(const Scene& scene, const FrameSettings& settings) {
@@ -178,6 +183,7 @@ Shot asked_shot(Page& page, const FrameSettings& settings) {
   if (page.opened->stress_case) return shot;
   set_look(page, settings.look);
   scene.camera = chosen_camera(page.opened->camera, settings.camera);
+  scene.camera.far_m = page.opened->far_m;
   if (!can_look(scene.camera, settings.frame)) {
     throw UsageError(
         "camera: at this time it stands at its target, or looks along its upward axis");

@@ -55,6 +55,7 @@ std::unique_ptr<Opened> opened_scene(const std::string& source) {
   opened->scene = load_scene(source, scene_search_path({}));
   const Scene& scene = opened->scene;
   opened->camera = scene.camera;
+  opened->far_m = scene.camera.far_m;
   opened->lights = scene.lights;
   opened->materials = scene.materials;
   opened->objects = scene.objects;
@@ -85,7 +86,9 @@ Json look_json(const Scene& scene) {
             {"light_kind", nullptr},
             {"shadows", nullptr},
             {"textures", has_textures},
-            {"impostors", has_impostors(scene)}};
+            {"impostors", has_impostors(scene)},
+            {"backdrop_m", nullptr}};
+  if (const auto distance_m = backdrop_distance_m(scene)) look["backdrop_m"] = *distance_m;
   if (!has_light) return look;
   const Light& light = scene.lights.front();
   look["light"] = vector_json(glm::dvec3{light.position_or_direction});

@@ -35,6 +35,7 @@ struct Opened {
   std::vector<Material> materials{};
   std::vector<Object> objects{};
   SceneLook look{};
+  double far_m = 0.0;  ///< of the camera, by the look
   std::optional<StressCase> stress_case;
   double severity = 0.0;
   std::shared_ptr<OpenedPicture> picture;
@@ -83,6 +84,7 @@ struct ShownFrame {
 struct Truth {
   std::shared_ptr<const Drawn> drawn;
   double focus_m = 0.0, aperture_m = 0.0;
+  Aperture aperture{};
   std::optional<AccumulationBuffer> buffer;
   SampleSums sums, first_half;
   std::optional<double> half_set_rms;

@@ -175,6 +175,8 @@ RefocusOptions options_of(const OpenedPicture& opened, const FrameSettings& sett
                                    pixel_of(settings.focus_at->y, picture.height)};
   }
   options.max_coc_px = settings.max_coc_px;
+  options.aperture = used_aperture(settings);
+  options.highlights = settings.highlights;
   return options;
 }
 

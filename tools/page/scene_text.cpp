@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "dof/parameters.h"
 #include "scenes/files/file_bytes.h"
 #include "scenes/load/load_scene.h"
 #include "scenes/models/model.h"
@@ -166,6 +167,7 @@ Json command_text(const Opened& opened, const FrameSettings& settings) {
             number(look.light->z);
   }
   if (!look.textures) text += " --textures off";
+  add(" --backdrop ", look.backdrop_m);
   if (look.impostors) {
     text += " --impostors " + std::string{word_for(parameter::kImpostorUses, *look.impostors)};
   }
@@ -182,7 +184,6 @@ Json command_text(const Opened& opened, const FrameSettings& settings) {
       };
       text += " --autofocus " + pixel(settings.focus_at->x, width) + "," +
               pixel(settings.focus_at->y, height);
-    } else {
     }
     for (const auto& [parameter, place, has_keys] : kLensNumbers) {
       add(" --" + std::string{parameter.name} + " ", settings.lens.given[place]);
@@ -193,6 +194,15 @@ Json command_text(const Opened& opened, const FrameSettings& settings) {
   if (is_image && settings.method.samples_lens()) {
     text += " --samples " + std::to_string(settings.sampling.samples);
   }
+  if (!is_image) return text;
+  const Aperture aperture = used_aperture(settings);
+  const auto add_set = [&](const Parameter& parameter, double value) {
+    if (value != parameter.preset)
+      add(" --" + std::string{parameter.name} + " ", std::optional{value});
+  };
+  add_set(parameter::kApertureBlades, aperture.blades);
+  add_set(parameter::kApertureTurn, static_cast<double>(aperture.turn_degrees));
+  add_set(parameter::kAnamorphic, static_cast<double>(aperture.stretch));
   return text;
 }
 

@@ -23,8 +23,28 @@ constexpr Parameter kPageFov = with_key(parameter::kFov, "fov_y_degrees");
 constexpr Parameter kPageTime = with_key(parameter::kFrame, "time");
 constexpr Parameter kPreview{"preview", "What sizes and radii are divided by", 1, 16, 1, "", "", "",
                              1};
-constexpr std::array kPageParameters{parameter::kCocScale, parameter::kMaxCoc, kPageSamples,
-                                     kPageFov, kPageTime};
+constexpr Parameter kPageTurn = with_key(parameter::kApertureTurn, "aperture_turn_degrees");
+constexpr Parameter kGain{
+    "gain", "How much brighter what is above the threshold is before the blur",
+    1.0,    1e4,
+    1.0,    "",
+    "",     "highlight_gain"};
+constexpr Parameter kThreshold{
+    "threshold", "Light above this is a highlight, which 8 bits have cut",
+    0.0,         1e4,
+    0.9,         "",
+    "",          "highlight_threshold"};
+constexpr std::array kPageParameters{parameter::kCocScale,
+                                     parameter::kMaxCoc,
+                                     kPageSamples,
+                                     kPageFov,
+                                     kPageTime,
+                                     parameter::kBackdrop,
+                                     parameter::kApertureBlades,
+                                     kPageTurn,
+                                     parameter::kAnamorphic,
+                                     kGain,
+                                     kThreshold};
 
 std::vector<double> checked_numbers(const Json& value, std::string_view name, std::size_t count,
                                     double least, double most) {
@@ -93,6 +113,9 @@ void read_look(const Json& request, FrameSettings& settings) {
     }
   }
   if (const Json* textures = given(request, "textures")) look.textures = textures->boolean();
+  if (const Json* metres = given(request, key_of(parameter::kBackdrop))) {
+    look.backdrop_m = checked_number(*metres, parameter::kBackdrop);
+  }
   if (const Json* effect = given(request, "effect")) {
     settings.effect = effect->text();
     if (*settings.effect != "none") parse_effect("effect", *settings.effect);
@@ -157,12 +180,28 @@ FrameSettings read_frame_settings(const Json& request) {
   take(parameter::kCocScale, settings.lens.coc_scale);
   take(parameter::kMaxCoc, settings.max_coc_px);
   take(kPageSamples, settings.sampling.samples);
+  take(parameter::kApertureBlades, settings.aperture.blades);
+  take(kPageTurn, settings.aperture.turn_degrees);
+  take(parameter::kAnamorphic, settings.aperture.stretch);
+  if (const char* error = aperture_error(settings.aperture)) throw UsageError(error);
+  settings.sampling.aperture.blades = settings.aperture.blades;
+  if (given(request, key_of(kGain)) != nullptr) {
+    HighlightCurve& curve = settings.highlights.emplace();
+    curve.threshold = kThreshold.preset;
+    take(kGain, curve.gain);
+    take(kThreshold, curve.threshold);
+  }
   if (const Json* hash = given(request, "hash")) settings.hash = hash->boolean();
   take(kPreview, settings.preview);
   settings.size.width = std::max(1, settings.size.width / settings.preview);
   settings.size.height = std::max(1, settings.size.height / settings.preview);
   if (settings.max_coc_px) *settings.max_coc_px /= static_cast<float>(settings.preview);
   return settings;
+}
+
+Aperture used_aperture(const FrameSettings& settings) {
+  if (settings.method.name() == kApertureMethod) return settings.aperture;
+  return {.blades = settings.method.samples_lens() ? settings.aperture.blades : 0};
 }
 
 Camera chosen_camera(const Camera& of_scene, const std::optional<CameraChoice>& choice) {

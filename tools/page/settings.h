@@ -13,6 +13,7 @@
 #include "tools/options/lens_options.h"
 #include "tools/options/method_options.h"
 #include "tools/options/scene_options.h"
+#include "tools/refocus/options.h"
 #include "tools/render/options.h"
 
 namespace softfocus {
@@ -41,6 +42,8 @@ struct FrameSettings {
   std::optional<std::string> effect;  ///< in place of the scene's: its name, or "none"
   Show show = Show::image;
   MethodChoice method{.filter = find_method("two-pass")};
+  Aperture aperture;
+  std::optional<HighlightCurve> highlights;  ///< of a picture
   LensOptions lens;
   std::optional<glm::dvec2> focus_at;  ///< 0 to 1 from the left and from the top
   std::optional<float> max_coc_px;
@@ -51,6 +54,9 @@ struct FrameSettings {
 /// Throws UsageError or JsonError, each with one line that names the key. Unknown keys are
 /// ignored.
 FrameSettings read_frame_settings(const Json& request);
+
+/// The aperture as the method has it: round, or with blades, or with all that can be set.
+Aperture used_aperture(const FrameSettings& settings);
 
 /// The scene's camera, or that camera in its place. Throws UsageError if nothing can be seen
 /// through it.

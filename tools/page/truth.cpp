@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "dof/measure/flip.h"
 #include "dof/measure/heat_map.h"
+#include "raster/numbers/exact_math.h"
 #include "tools/cli/errors.h"
 #include "tools/page/drawing.h"
 #include "tools/page/picture.h"
@@ -37,7 +39,20 @@ const Image* known_truth(const Drawn& drawn) {
 
 bool is_of(const Truth& truth, const ShownFrame& shown) {
   return truth.drawn == shown.drawn && truth.focus_m == shown.lens->lens.focus_m &&
-         truth.aperture_m == shown.lens->aperture_radius_m;
+         truth.aperture_m == shown.lens->aperture_radius_m &&
+         truth.aperture == used_aperture(shown.settings);
+}
+
+/// A lens of blades that are turned, behind an anamorphic front: as aperture_stamps.cpp has it.
+void turn_and_stretch(const Aperture& aperture, std::vector<glm::dvec2>& points) {
+  if (aperture.turn_degrees == 0.0f && aperture.stretch == 1.0f) return;
+  const double stretch = static_cast<double>(aperture.stretch);
+  const glm::dvec2 scale{std::fmin(1.0, 1.0 / stretch), std::fmin(1.0, stretch)};
+  const double degrees = static_cast<double>(aperture.turn_degrees);
+  const glm::dvec2 turned{exact_math::cos_degrees(degrees), exact_math::sin_degrees(degrees)};
+  for (glm::dvec2& p : points) {
+    p = scale * glm::dvec2{turned.x * p.x - turned.y * p.y, turned.y * p.x + turned.x * p.y};
+  }
 }
 
 /// The last frame's shot by as many views of the lens as there may be, its shutter open as the
@@ -46,7 +61,8 @@ Shot shot_of_truth(Page& page, const ShownFrame& shown) {
   FrameSettings settings = shown.settings;
   settings.show = Show::image;
   settings.method = find_method_choice("accumulation");
-  settings.sampling = {.samples = kMostTruthViews};
+  settings.sampling = {.samples = kMostTruthViews,
+                       .aperture = {used_aperture(shown.settings).blades}};
   return shot_of_drawn(page, *shown.drawn, settings);
 }
 
@@ -57,6 +73,8 @@ Truth begin_truth(const ShownFrame& shown, const Shot& shot, ThreadPool& pool) {
   truth.focus_m = shown.lens->lens.focus_m;
   truth.aperture_m = shown.lens->aperture_radius_m;
   truth.buffer = make_accumulation_buffer(lens_views_of(shot, drawn.frame, *shown.lens), pool);
+  truth.aperture = used_aperture(shown.settings);
+  turn_and_stretch(truth.aperture, truth.buffer->points);
   truth.sums = make_sample_sums(drawn.picture().width, drawn.picture().height);
   return truth;
 }
@@ -191,6 +209,7 @@ Json answer_compare_methods(Page& page, const Json& request) {
     for (const Json& radius : request.at("radii").values()) {
       stop_if_cancelled(page);
       UsedLens lens = *shown.lens;
+      if (method->name == kApertureMethod) lens.settings.aperture = used_aperture(shown.settings);
       lens.settings.max_coc_px = static_cast<float>(
           checked_number(radius, "radii", 0.0, static_cast<double>(kLargestMaxCoc)));
       const auto start = std::chrono::steady_clock::now();

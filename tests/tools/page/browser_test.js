@@ -108,6 +108,37 @@ test("every control changes the picture to the program's for the same settings",
   await changed("resolution 1024x1024");
 });
 
+test("blades, a stretched aperture, the backdrop's distance are the program's; the subject's moves the camera", async (page) => {
+  const seen = new Set([await drawn(page)]);
+  const changed = async (part, value) => {
+    await set_number(page, part, value);
+    await equals_program(page);
+    assert.ok(!seen.has(await drawn(page)), `${part} changed nothing`);
+    seen.add(await drawn(page));
+  };
+  await changed("backdrop-part", 12);
+  assert.ok(await page.locator("#aperture-why").isVisible());
+  assert.ok(!await page.locator("#blades-part").isVisible());
+  await page.locator("#method").selectOption("scatter-aperture");
+  await changed("blades-part", 5);
+  await changed("turn-part", 20);
+  await changed("anamorphic-part", 2);
+  await set_number(page, "blades-part", 2);
+  assert.match(await error_line(page), /3 to 64/);
+  await page.locator("#method").selectOption("accumulation");
+  await changed("blades-part", 6);
+  assert.ok(!await page.locator("#anamorphic-part").isVisible());
+  await page.locator("#method").selectOption("disc-layers");
+  await drawn(page);
+  await set_number(page, "subject-distance-part", 2.8);
+  await drawn(page);
+  assert.strictEqual(await number_in(page, "focus"), 2.8);
+  await page.waitForFunction(() => /camera=[^&]*&.*backdrop=12/.test(location.hash));
+  const [x, , z] = /camera=([^&]*)/.exec(new URL(page.url()).hash)[1].split(",").map(Number);
+  near(z, 1.5 + 1.4, 2e-3);  // 1.4 m farther
+  assert.strictEqual(x, 0);
+}, { at: "#scene=portrait" });
+
 test("the light moves by hand; shadows, textures, effects and wires are the program's", async (page) => {
   const plain = await drawn(page);
   await press(page, "j");
@@ -261,6 +292,13 @@ test("a picture and its depth are refocused with the program's bits, and scenes 
   await changed("a click");
   await set_number(page, "f-number-part", 1.2);
   await changed("f-number");
+  await page.locator("#method").selectOption("scatter-aperture");
+  await set_number(page, "blades-part", 6);
+  await changed("blades");
+  await set_number(page, "gain-part", 6);
+  await changed("gain of highlights");
+  await set_number(page, "threshold-part", 0.3);
+  await changed("where highlights begin");
   await page.locator("#method").selectOption("two-pass");
   await changed("method");
   const [download] = await Promise.all([page.waitForEvent("download"),

@@ -289,6 +289,14 @@ TEST_CASE("every scene's frame has the picture_hash of the page's command" *
   check(R"("shadows":"volumes","effect":"gaussian:sigma=1","impostors":"auto")");
   open(page, "glass");
   check(R"("dof":false)");
+  open(page, "portrait");
+  check(R"("backdrop_m":9.5)");
+  check(
+      R"("backdrop_m":20,"camera":{"position_m":[0,1.5,3],"target_m":[0,1.5,0],"fov_y_degrees":20})");
+  check(
+      R"("method":"scatter-aperture","aperture_blades":5,"aperture_turn_degrees":-12.5,"anamorphic":1.5)");
+  check(R"("method":"accumulation","samples":16,"aperture_blades":6,"anamorphic":2)");
+  check(R"("method":"two-pass","aperture_blades":6)");
   const std::string camera =
       R"(,"camera":{"position_m":[1,1.5,4],"target_m":[0,0.5,0],"fov_y_degrees":30})";
   // Effects and the shutter, with the scene's camera and with another.
@@ -330,6 +338,42 @@ TEST_CASE("the truth is accumulation's picture of many views, and its distance t
   CHECK(reply.at("hash").text() == hash);
   CHECK(reply.at("flip_mean").number() == mean_flip(page.shown->picture, shown, *page.pool));
   CHECK(reply.at("width").integer() == 40);
+}
+
+TEST_CASE("the truth has the aperture's blades, turned and stretched as the method has them") {
+  const TemporaryDirectory folder;
+  write_file(folder.file("lights.toml"),
+             "[material.lamp]\nlit = false\ndiffuse = [1, 1, 1]\n[[scatter]]\nshape = \"sphere\"\n"
+             "radius = 0.05\nmaterials = [\"lamp\"]\ncount = 5\nregion_min = [-0.7, -0.7, -1]\n"
+             "region_max = [0.7, 0.7, 0]\n");
+  Page page;
+  open(page, folder.file("lights.toml"));
+  const std::string frame =
+      R"("size":[96,96],"focus":{"m":1},"coc_scale":6,"max_coc_px":64,"method":"scatter-aperture","aperture_blades":3,)"
+      R"("aperture_turn_degrees":40,"anamorphic":)";
+  const auto flip_of = [&](const char* stretch) {
+    hash_of(page, frame + stretch);
+    return ask_well(page, R"({"do":"truth","views":512})").at("flip_mean").number();
+  };
+  // Each against its own truth, whose views are kept no longer than its aperture.
+  const double narrow = flip_of("3"), low = flip_of("0.33");
+  const Image picture = page.shown->picture;
+  const double of_another = [&] {
+    hash_of(page, frame + "3");
+    ask_well(page, R"({"do":"truth","views":512})");
+    page.shown->picture = picture;
+    page.shown->flip.reset();
+    return ask_well(page, R"({"do":"truth"})").at("flip_mean").number();
+  }();
+  CAPTURE(narrow);
+  CAPTURE(low);
+  CHECK(of_another > 1.3 * std::max(narrow, low));
+  for (const char* const wrong :
+       {R"("aperture_blades":2)", R"("aperture_blades":3.5)", R"("anamorphic":0)",
+        R"("highlight_gain":0.5)", R"("backdrop_m":9)"}) {
+    CAPTURE(wrong);
+    CHECK(ask(page, R"({"do":"frame",)" + std::string{wrong} + "}").find("error") != nullptr);
+  }
 }
 
 TEST_CASE("another lens begins its truth anew") {

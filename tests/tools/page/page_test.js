@@ -25,6 +25,8 @@ const kParameters = {
   f_number: { name: "f-number", preset: 2, of_lens: true },
   shift_mm: { name: "shift", preset: 0, of_lens: true },  // a number that the page knows nothing of
   coc_scale: { name: "coc-scale", preset: 1 },
+  aperture_blades: { name: "aperture-blades", preset: 0 }, highlight_gain: { preset: 1 },
+  highlight_threshold: { preset: 0.9 },
   samples: { preset: 64 }, max_coc_px: { most: 1024 }, near: { key: "near_m" }, far: { key: "far_m" },
   scale: { key: "scale" }, offset: { key: "offset" },
 };
@@ -48,7 +50,8 @@ test("a link gives the state back", async () => {
     photo: { on: true, sensor: "aps-c", keep: "focal-length", lock: true, subject: true },
     sides: [{ ...first_side(), dof: false, focus: { m: 1.25 }, max_coc_px: 12, samples: 16 },
             { ...first_side(), method: "disc-layers", focus: { at: [0.25, 0.75] }, f_number: 5.6,
-              shift_mm: -3 }],
+              shift_mm: -3, aperture_blades: 7, highlight_gain: 4 }],
+    look: { ...first_state().look, backdrop_m: 12.5 },
   };
   const words = read_link(`#${link_of(state)}`);
   const opened = state_to_open(words);
@@ -233,6 +236,7 @@ test("a picture's request and its command have the numbers that its encoding tak
                 { name: "device", needs: "near far", takes: "" },
                 { name: "circles", needs: "", takes: "" }],
     readings: [{ name: "holes", key: "holes" }, { name: "depth-fit", key: "depth_fit" }],
+    methods: [{ name: "two-pass" }, { name: "scatter-aperture", stretch: true }],
   };
   const picture = { depth: "/own/my d.png", encoding: "device", numbers: { near_m: 1, far_m: 9, scale: 2 },
                     choices: { depth_fit: "crop" } };
@@ -251,6 +255,11 @@ test("a picture's request and its command have the numbers that its encoding tak
       "softfocus refocus a.png 'my d.png' -o picture.png --json --depth-encoding device --near 1 --far 9 " +
       "--depth-fit crop --method two-pass --focus-at 150,199 --focal-length 50 --f-number 2 --shift 0 --coc-scale 1");
   assert.strictEqual(refocus_command(state, { ...side, dof: false }, listing), null);
+  const set = { aperture_blades: 5, highlight_gain: 8 };
+  const seldom = (method) => / --method (.*) --focus-at/.exec(
+      refocus_command(state, { ...state.sides[0], ...set, method }, listing))[1];
+  assert.strictEqual(seldom("two-pass"), "two-pass --highlights 8,0.9");
+  assert.strictEqual(seldom("scatter-aperture"), "scatter-aperture --aperture-blades 5 --highlights 8,0.9");
   const of_circles = { ...state, picture: { ...state.picture, encoding: "circles" } };
   assert.strictEqual(
       refocus_command(of_circles, state.sides[0], listing),

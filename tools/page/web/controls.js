@@ -60,6 +60,22 @@ export function make_controls({ store, camera, move, focus_m, max_coc, object_m,
       set: (value) => side({ focus: { m: value } }),
       shown_digits: () => (store.side().focus.at ? 4 : 5),
     });
+    add("subject-distance", "focus_m", {
+      label: "Subject distance", tip: "subject_distance", curve: "log", from: 0.3, to: 30,
+      get: focus_m, set: go_to });
+    add("backdrop", "backdrop_m", {
+      label: "Backdrop distance", curve: "log", from: 1, to: 100,
+      get: () => store.get().look.backdrop_m ?? scene_look()?.backdrop_m,
+      set: (value) => look({ backdrop_m: value }) });
+    add("blades", "aperture_blades", {
+      label: "Blades", values: [0, 3, 4, 5, 6, 7, 8, 9, 11, 14, 18],
+      spoken: (text) => (text === "0" ? "round" : `${text} blades`) });
+    add("turn", "aperture_turn_degrees", { label: "Turn of the blades", from: -180, to: 180, decimals: 0 });
+    add("anamorphic", "anamorphic", { label: "Height over width", unit: "×", curve: "log",
+                                      from: 0.25, to: 4 });
+    add("gain", "highlight_gain", { label: "Highlights, gain", unit: "×", curve: "log", from: 1, to: 64 });
+    add("threshold", "highlight_threshold", { label: "Highlights, from", from: 0, to: 1,
+                                              decimals: 2 });
     add("max-coc", "max_coc_px", { label: "Filter size, radius", key: "X", curve: "root", from: 0, to: 128,
                                    digits: 2, decimals: 1, get: max_coc, shown_digits: () => 4 });
     add("coc-scale", "coc_scale", { label: "Scale of the circles", unit: "×", key: "K",
@@ -119,6 +135,8 @@ export function make_controls({ store, camera, move, focus_m, max_coc, object_m,
     by_id("wireframe").checked = state.show === "wireframe";
     by_id("impostors").checked = now.impostors !== "off";
     by_id("impostors-part").hidden = !has?.impostors;
+    by_id("subject-distance-part").hidden = !camera();
+    by_id("backdrop-part").hidden = !has?.backdrop_m;
     const effect = by_id("effect");
     if (now.effect && ![...effect.options].some(({ value }) => value === now.effect)) {
       effect.append(element("option", {}, now.effect));
@@ -138,6 +156,15 @@ export function make_controls({ store, camera, move, focus_m, max_coc, object_m,
     if (patch.on) side({ f_number: nearest_stop(store.side().f_number) });
     if (focal_length_mm) side({ focal_length_mm: within("focal_length_mm", focal_length_mm) });
     if (fov_y_degrees) move({ ...now, fov_y_degrees: within("fov_y_degrees", fov_y_degrees) });
+  }
+
+  /** The camera comes nearer to what is in focus, or goes back from it, and the focus stays on it. */
+  function go_to(metres) {
+    const now = camera();
+    if (!now) return;
+    const way = metres - focus_m();
+    side({ focus: { m: metres } });
+    move(backed(now, way));
   }
 
   /** Another focal length; the camera moves if the subject's size is kept. */
@@ -181,6 +208,10 @@ export function make_controls({ store, camera, move, focus_m, max_coc, object_m,
     const of_scene = by_id("method").querySelector("optgroup:last-child");
     if (of_scene) of_scene.disabled = Boolean(state.picture);
     by_id("samples-part").hidden = !method?.samples;
+    by_id("blades-part").hidden = !method?.blades;
+    by_id("turn-part").hidden = !method?.stretch || now.aperture_blades === 0;
+    by_id("anamorphic-part").hidden = !method?.stretch;
+    by_id("aperture-why").hidden = Boolean(method?.blades);
     by_id("compare").checked = state.sides.length > 1;
     by_id("side-part").hidden = state.sides.length < 2;
     check("editing", String(state.editing));

@@ -2,7 +2,7 @@
 // digits, so that the same picture comes back, to the bit. What cannot be read is left at its
 // default, so an old link still opens.
 
-import { first_side, first_state, kShadows, kShows, lens_keys } from "./state.js";
+import { first_side, first_state, kSeldomSet, kShadows, kShows, lens_keys, seldom_set } from "./state.js";
 
 const kShortKeys = {
   method: "method", f: "focal_length_mm", N: "f_number", max: "max_coc_px", scale: "coc_scale",
@@ -13,7 +13,8 @@ const kShortKeys = {
 function side_keys() {
   const short = Object.values(kShortKeys);
   const others = lens_keys().filter((key) => key !== "focus_m" && !short.includes(key));
-  return [...Object.entries(kShortKeys), ...others.map((key) => [key, key])];
+  return [...Object.entries(kShortKeys), ...others.map((key) => [key, key]),
+          ...kSeldomSet.map((key) => [key, key])];
 }
 
 function numbers_of(text, count) {
@@ -23,9 +24,10 @@ function numbers_of(text, count) {
 
 function write_side(pairs, side, prefix) {
   pairs.push([`${prefix}dof`, side.dof ? "1" : "0"]);
+  const left_out = kSeldomSet.filter((key) => !seldom_set(side).includes(key));
   for (const [key, name] of side_keys()) {
     const value = side[name];
-    if (value === null) continue;
+    if (value === null || left_out.includes(name)) continue;
     pairs.push([prefix + key, String(value)]);
   }
   if (side.focus.at) pairs.push([`${prefix}at`, side.focus.at.join(",")]);
@@ -88,12 +90,13 @@ export function link_of(state) {
     const { position_m, target_m, fov_y_degrees } = state.camera;
     pairs.push(["camera", [...position_m, ...target_m, fov_y_degrees].join(",")]);
   }
-  const { light, shadows, textures, impostors, effect } = state.look;
+  const { light, shadows, textures, impostors, effect, backdrop_m } = state.look;
   if (light) pairs.push(["light", light.join(",")]);
   if (shadows) pairs.push(["shadows", shadows]);
   if (!textures) pairs.push(["textures", "0"]);
   if (impostors) pairs.push(["impostors", impostors]);
   if (effect) pairs.push(["effect", effect]);
+  if (backdrop_m) pairs.push(["backdrop", String(backdrop_m)]);
   if (state.photo.on) {
     const { sensor, keep, lock, subject } = state.photo;
     pairs.push(["sensor", sensor], ["keep", keep], ["lock", lock ? "1" : "0"]);
@@ -179,6 +182,7 @@ export function with_link(state, words) {
     textures: words.get("textures") !== "0",
     impostors: ["auto", "off"].includes(words.get("impostors")) ? words.get("impostors") : null,
     effect: words.get("effect") ?? null,
+    backdrop_m: Number(words.get("backdrop")) || null,
   };
   if (words.has("sensor")) {
     read.photo = { on: true, sensor: words.get("sensor"), lock: words.get("lock") === "1",

@@ -27,6 +27,11 @@ function lens_of(from) {
 
 const preset = (key) => parameters[key]?.preset ?? null;
 
+/** What a side has besides and seldom sets: requests and links leave out what is as preset. */
+export const kSeldomSet = ["aperture_blades", "aperture_turn_degrees", "anamorphic", "highlight_gain",
+                           "highlight_threshold"];
+export const seldom_set = (side) => kSeldomSet.filter((key) => side[key] !== preset(key));
+
 /** One of the two settings that can be compared: a method and its lens. */
 export function first_side() {
   return {
@@ -38,12 +43,13 @@ export function first_side() {
     max_coc_px: null,  // null: the scene's, or what the method does best with
     coc_scale: preset("coc_scale"),
     samples: preset("samples"),
+    ...Object.fromEntries(kSeldomSet.map((key) => [key, preset(key)])),
   };
 }
 
 /** What the scene is drawn with; null: as it says. `light` is the first light's place or direction. */
 export const first_look = () => (
-    { light: null, shadows: null, textures: true, impostors: null, effect: null });
+    { light: null, shadows: null, textures: true, impostors: null, effect: null, backdrop_m: null });
 
 export function first_state() {
   return {
@@ -116,11 +122,12 @@ export function frame_request(state, side, preview, hash = true) {
     numbers: ["coc", "depth"].includes(state.show),
     hash: hash && preview === 1,
   };
+  for (const key of seldom_set(side)) request[key] = side[key];
   if (state.camera) request.camera = state.camera;
   if (state.picture || state.failure) return request;
-  const { light, shadows, textures, impostors, effect } = state.look;
+  const { light, shadows, textures, impostors, effect, backdrop_m } = state.look;
   Object.assign(request, light && { light }, shadows && { shadows }, !textures && { textures },
-                impostors && { impostors }, effect && { effect });
+                impostors && { impostors }, effect && { effect }, backdrop_m && { backdrop_m });
   return request;
 }
 

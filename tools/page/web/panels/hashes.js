@@ -3,7 +3,7 @@
 
 import { announce, by_id, copy_text, element, save_text, show_error } from "../dom.js";
 import { kBackground } from "../engine.js";
-import { lens_keys, parameters } from "../state.js";
+import { lens_keys, parameters, seldom_set } from "../state.js";
 import { depth_words, kCircles } from "./picture.js";
 
 const kSlice = 8;  // golden hashes a request
@@ -20,6 +20,16 @@ function lens_words({ picture: { size } }, side) {
   const others = lens_keys().filter((key) => key !== "focus_m");
   return [pixel ? `--focus-at ${pixel.join(",")}` : `--focus ${side.focus.m}`,
           ...[...others, "coc_scale"].map((key) => `--${parameters[key].name} ${side[key]}`)];
+}
+
+/** Of the aperture what the method has; of highlights both numbers. */
+function seldom_words(side, { methods }) {
+  const of_method = methods.find(({ name }) => name === side.method);
+  const set = seldom_set(side);
+  const aperture = of_method?.stretch ? set.filter((key) => !key.startsWith("highlight")) : [];
+  const gain = set.includes("highlight_gain")
+      ? [`--highlights ${side.highlight_gain},${side.highlight_threshold}`] : [];
+  return [...aperture.map((key) => `--${parameters[key].name} ${side[key]}`), ...gain];
 }
 
 const name_of = (path) => {
@@ -40,7 +50,7 @@ export function refocus_command(state, side, listing) {
   const files = has_circles ? [`--circles ${name_of(picture.depth ?? state.scene)}`] : depth;
   return ["softfocus refocus", name_of(state.scene), ...files,
           "-o picture.png --json", ...depth_words(picture, listing), ...show,
-          `--method ${side.method}`, ...(has_circles ? [] : lens_words(state, side)),
+          `--method ${side.method}`, ...seldom_words(side, listing), ...(has_circles ? [] : lens_words(state, side)),
           ...(side.max_coc_px === null ? [] : [`--max-coc ${side.max_coc_px}`])].join(" ");
 }
 
