@@ -277,9 +277,17 @@ Scene read_scene_file(const std::filesystem::path& file, ThreadPool* pool) {
 }
 
 std::string read_scene_title(const std::filesystem::path& file) {
-  const toml::table table =
-      parse_toml(read_file_bytes(file, kMaxSceneBytes), file.string(), "docs/scene-format.md");
-  return printable(table["title"].value_or(std::string{}));
+  const std::string text = read_file_bytes(file, kMaxSceneBytes);
+  const auto title_in = [&](std::string_view part) {
+    const toml::table table = parse_toml(part, file.string(), "docs/scene-format.md");
+    return printable(table["title"].value_or(std::string{}));
+  };
+  // The top ends at the first table, which a text over several lines may look like.
+  try {
+    return title_in(std::string_view{text}.substr(0, text.find("\n[")));
+  } catch (const SceneError&) {
+    return title_in(text);
+  }
 }
 
 namespace {
@@ -335,7 +343,7 @@ Scene load_scene(std::string_view scene, const std::vector<std::filesystem::path
   if (is_model_name(scene)) {
     return make_model_scene(load_model(file, pool), file.stem().string());
   }
-  const auto listings = list_scenes(search_path);
+  const auto listings = find_scenes(search_path);
   const auto found = std::find_if(listings.begin(), listings.end(),
                                   [&](const SceneListing& l) { return l.name == scene; });
   if (found == listings.end()) fail_unknown(scene, listings);

@@ -25,7 +25,7 @@ Scene read_scene_text(std::string_view text, const std::filesystem::path& file,
                       ThreadPool* pool = nullptr);
 
 /// A scene file's title without reading the scene; empty where there is none. Throws
-/// SceneError for what is no TOML.
+/// SceneError if the top of the file is no TOML.
 std::string read_scene_title(const std::filesystem::path& file);
 
 /// Where scenes are looked for, in this order: the directories given by the user,
@@ -42,6 +42,9 @@ struct SceneListing {
 
 /// Every .toml file on the path, by name; the first of a name wins.
 std::vector<SceneListing> list_scenes(const std::vector<std::filesystem::path>& search_path);
+
+/// The same without titles: no file is read.
+std::vector<SceneListing> find_scenes(const std::vector<std::filesystem::path>& search_path);
 
 /// Whether `scene` names one of the scenes without end: "random:" and what should be a number.
 bool is_random_scene(std::string_view scene);

@@ -24,7 +24,7 @@ std::vector<std::filesystem::path> scene_search_path(
   return path;
 }
 
-std::vector<SceneListing> list_scenes(const std::vector<std::filesystem::path>& search_path) {
+std::vector<SceneListing> find_scenes(const std::vector<std::filesystem::path>& search_path) {
   std::vector<SceneListing> listings;
   for (const auto& directory : search_path) {
     std::error_code unreadable;
@@ -36,18 +36,25 @@ std::vector<SceneListing> list_scenes(const std::vector<std::filesystem::path>& 
         return other.name == listing.name;
       });
       if (is_known) continue;
-      try {
-        listing.title = read_scene_title(file);
-      } catch (const SceneError& error) {
-        // Worth a line in the list, and no reason to hide the others.
-        listing.title = std::string("(cannot be read: ") + error.what() + ")";
-      }
       listings.push_back(std::move(listing));
     }
   }
   // A directory comes in no particular order.
   std::sort(listings.begin(), listings.end(),
             [](const auto& a, const auto& b) { return a.name < b.name; });
+  return listings;
+}
+
+std::vector<SceneListing> list_scenes(const std::vector<std::filesystem::path>& search_path) {
+  std::vector<SceneListing> listings = find_scenes(search_path);
+  for (SceneListing& listing : listings) {
+    try {
+      listing.title = read_scene_title(listing.file);
+    } catch (const SceneError& error) {
+      // Worth a line in the list, and no reason to hide the others.
+      listing.title = std::string("(cannot be read: ") + error.what() + ")";
+    }
+  }
   return listings;
 }
 

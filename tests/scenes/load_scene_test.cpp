@@ -160,6 +160,19 @@ TEST_CASE("a scene that cannot be read is listed as such") {
   CHECK(contains(listings[0].title, "(cannot be read: "));
 }
 
+TEST_CASE("a title is read wherever it may stand before the tables, and of them alone") {
+  const TemporaryDirectory directory;
+  const std::string file = directory.file("a.toml");
+  const auto title_of = [&](const std::string& text) {
+    write_file(file, text);
+    return read_scene_title(file);
+  };
+  CHECK(title_of("background = [\n[0, 0, 0]]\ntitle = \"late\"\n[camera]\n") == "late");
+  CHECK(title_of("note = \"\"\"\n[camera]\n\"\"\"\ntitle = \"later\"\n") == "later");
+  CHECK(title_of("[camera]\ntitle = \"none\"\n").empty());
+  CHECK(title_of("title = \"told\"\n[camera\n") == "told");
+}
+
 TEST_CASE("an unknown scene is answered with the names there are") {
   const std::string message = scene_error_of([] { built_in("forest"); });
   CHECK(

@@ -366,6 +366,36 @@ test("of many changes only the newest is drawn", async () => {
   assert.deepStrictEqual(frames.timings(), []);  // they are of another setting
 });
 
+test("while a slow frame is moved it stays coarse, a quick one whole, whatever its drawing once took", async () => {
+  const { first_state, make_store } = await module_of("state.js");
+  const { make_frames } = await module_of("frames.js");
+  const previews_of = async (whole_ms) => {
+    const store = make_store(first_state());
+    const previews = [];
+    const engine = {
+      ask: ({ preview }) => {
+        previews.push(preview);
+        const ms = 3 + whole_ms / preview ** 2;
+        return new Promise((done) => setTimeout(() => done({ reply: { draw_ms: 300 / preview, filter_ms: ms } }), ms));
+      },
+      cancel_background() {}, cancel_running() {},
+    };
+    const frames = make_frames({ engine, store, moving: () => false, paint() {}, on_error() {}, on_settled() {},
+                                 on_frame() {} });
+    frames.set_open(true);
+    for (let time = 1; time <= 30; time++) {
+      store.change({ time });
+      frames.want();
+      await new Promise((done) => setTimeout(done, 10));
+    }
+    frames.pause(true);
+    return previews;
+  };
+  assert.ok((await previews_of(15)).every((preview) => preview === 1));
+  const [first, ...others] = (await previews_of(80)).slice(1);
+  assert.ok(first > 1 && others.length > 3 && others.every((preview) => preview > 1), `${others}`);
+});
+
 test("a frame that becomes late after a change gives way to the next", async () => {
   const { first_state, make_store } = await module_of("state.js");
   const { make_frames } = await module_of("frames.js");

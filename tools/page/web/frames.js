@@ -5,6 +5,8 @@ import { kUrgent } from "./engine.js";
 import { frame_request } from "./state.js";
 
 const kSmoothMs = 50;   // a frame this quick needs no coarse one before it
+const kFixedMs = 8;     // about what a frame takes of any size
+const kHalfMs = 200;    // longer than this, a coarse frame has a quarter of the width, not a half
 const kSettleMs = 180;  // without input this long, the whole frame is drawn
 const kLateMs = 1000;   // a coarse frame that takes longer gives way to the next
 const kKept = 100;      // timings of one setting, for the report
@@ -35,7 +37,8 @@ export function make_frames({ engine, store, moving, paint, on_frame, on_error, 
   let open = false;     // a scene is there
   let last_input = -Infinity;
   let whole_ms = 0;     // what a whole frame is thought to take
-  let drawn_ms = 0;     // of the last drawing
+  let was_slow = false; // the last whole frame was
+  let is_cold = true;   // the scene's first frame takes longer than any other
   let timer = 0;
   let way_timer = 0;
   let timings = [];
@@ -47,7 +50,7 @@ export function make_frames({ engine, store, moving, paint, on_frame, on_error, 
   function preview_of(state) {
     if (state.failure) return 1;  // a coarser case would be another one
     if (whole_ms <= kSmoothMs || performance.now() - last_input > kSettleMs) return 1;
-    return whole_ms <= 4 * kSmoothMs ? 2 : 4;
+    return whole_ms <= kHalfMs ? 2 : 4;
   }
 
   function pump() {
@@ -83,7 +86,6 @@ export function make_frames({ engine, store, moving, paint, on_frame, on_error, 
     dirty = false;
     running = { began: performance.now(), preview };
     let last = null;
-    let total_ms = 0;
     for (const index of sides_in_order(state)) {
       // A hash takes longer than showing the picture; nobody reads it from one that moves.
       const request = frame_request(state, state.sides[index], preview, !moving());
@@ -99,9 +101,6 @@ export function make_frames({ engine, store, moving, paint, on_frame, on_error, 
         break;
       }
       paint(index, reply, pixels, state, preview);
-      // A drawing that was kept is told with the time that it once took.
-      total_ms += reply.filter_ms + (reply.draw_ms === drawn_ms ? 0 : reply.draw_ms);
-      drawn_ms = reply.draw_ms;
       last = reply;
     }
     const wall_ms = performance.now() - running.began;
@@ -109,7 +108,14 @@ export function make_frames({ engine, store, moving, paint, on_frame, on_error, 
     failed = !last;
     if (last) {
       coarse = preview > 1;
-      whole_ms = total_ms * (coarse ? preview * preview : 1);
+      if (coarse) {
+        // Without going to and fro: after a slow one a whole frame must be sure to be quick.
+        whole_ms = (wall_ms - (was_slow ? 0 : kFixedMs)) * preview * preview;
+      } else {
+        whole_ms = is_cold ? Math.min(wall_ms, kHalfMs) : wall_ms;
+        was_slow = !is_cold && wall_ms > kSmoothMs;
+        is_cold = false;
+      }
       if (setting_key(state) !== timed) timings = [];
       timed = setting_key(state);
       if (!coarse) timings.push({ wall_ms, draw_ms: last.draw_ms, filter_ms: last.filter_ms });
@@ -145,6 +151,8 @@ export function make_frames({ engine, store, moving, paint, on_frame, on_error, 
     set_open(on) {
       open = on;
       whole_ms = 0;
+      was_slow = false;
+      is_cold = true;
       if (!on) {
         engine.cancel_running();
         on_settled(false);

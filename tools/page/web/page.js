@@ -383,8 +383,9 @@ async function open_now(what, { words = null, read = null, state = null }) {
   by_id("camera-home").disabled = Boolean(what.failure || what.picture);
   set_playing(false);
   store.set(next);
-  frames.set_open(true);
+  await null;  // the store has told of it: one frame is enough
   frames.want(false);
+  frames.set_open(true);
   truth.renew();
   announce(`${reply.title ?? "The scene"} is open.`);
   show_own_scene(next.scene);
