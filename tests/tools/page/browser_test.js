@@ -965,7 +965,7 @@ test("the first sight is a portrait by the default method, and the thesis's scen
 }, { at: "" });
 
 test("a drag never blocks the page for 50 ms, and shows pictures all the while", async (page) => {
-  // A goal that nothing has shown yet: it is measured where times are asked for.
+  // Where other programs take the cores it would fail by chance.
   if (!process.env.FIGURES) return "it takes an idle machine: set FIGURES";
   const is_busy = os.loadavg()[0] > os.cpus().length;
   await page.evaluate(() => {
@@ -998,9 +998,9 @@ test("a drag never blocks the page for 50 ms, and shows pictures all the while",
   }
   if (is_busy) return "other programs take the cores";
   assert.deepStrictEqual(long_tasks, []);
-  assert.ok(gaps[gaps.length >> 1] < 100, `a picture each ${gaps[gaps.length >> 1]} ms`);
+  assert.ok(gaps[gaps.length - 1] < 100, `no picture for ${gaps[gaps.length - 1]} ms`);
   return null;
-});
+}, { no_gpu: true });  // a GPU that is emulated takes the cores
 
 test("the focus follows the pointer if it is asked to", async (page) => {
   const box = await page.locator("#picture").boundingBox();

@@ -630,8 +630,10 @@ async function open_link(fragment) {
 
 async function start(ready) {
   build = ready.build ?? "";
-  const about = (await engine.ask({ do: "about" })).reply;
-  listing = (await engine.ask({ do: "scenes" })).reply;
+  const compiler = shader.find_compiler();
+  const asked = [engine.ask({ do: "about" }), engine.ask({ do: "scenes" })];
+  const about = (await asked[0]).reply;
+  listing = (await asked[1]).reply;
   if (about.error || listing.error) {
     show_error(about.error ?? listing.error);
     return;
@@ -668,7 +670,8 @@ async function start(ready) {
     methods: listing.methods.filter(({ kind }) => kind === "filter"),
     choose: (method, radius) => store.change_side({ method, max_coc_px: radius }),
   });
-  await shader.find_compiler();
+  if (shader_of(read_link(location.hash))) await compiler;
   await open_link(location.hash);
+  await compiler;
   if (store.get().shader) tabs.choose("tab-shader");
 }
