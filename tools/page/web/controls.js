@@ -64,7 +64,7 @@ export function make_controls({ store, camera, move, focus_m, max_coc, object_m,
       label: "Subject distance", tip: "subject_distance", curve: "log", from: 0.3, to: 30,
       get: focus_m, set: go_to });
     add("backdrop", "backdrop_m", {
-      label: "Backdrop distance", curve: "log", from: 1, to: 100,
+      label: "Backdrop distance", curve: "log", from: 1, to: 100, shown_digits: () => 3,
       get: () => store.get().look.backdrop_m ?? scene_look()?.backdrop_m,
       set: (value) => look({ backdrop_m: value }) });
     add("blades", "aperture_blades", {
