@@ -295,10 +295,9 @@ test("a picture and its depth are refocused with the program's bits, and scenes 
   await page.locator("#method").selectOption("scatter-aperture");
   await set_number(page, "blades-part", 6);
   await changed("blades");
-  await set_number(page, "gain-part", 6);
-  await changed("gain of highlights");
   await set_number(page, "threshold-part", 0.3);
-  await changed("where highlights begin");
+  await set_number(page, "gain-part", 6);
+  await changed("highlights");
   await page.locator("#method").selectOption("two-pass");
   await changed("method");
   const [download] = await Promise.all([page.waitForEvent("download"),
