@@ -203,6 +203,9 @@ test("the error of a picture without depth of field is that of the pinhole", asy
   const off = { ...first_side(), dof: false };
   assert.strictEqual(frame_request(first_state(), off, 1).dof, false);
   const measured = frame_request({ ...first_state(), show: "error" }, off, 1);
+  const bladed = { ...first_side(), method: "scatter-aperture", aperture_blades: 5 };
+  const blades_of = (patch) => frame_request({ ...first_state(), ...patch }, bladed, 1).aperture_blades;
+  assert.deepStrictEqual([blades_of({}), blades_of({ failure: { name: "leak-far", value: 1 } })], [5, undefined]);
   assert.deepStrictEqual([measured.dof, measured.method, measured.show], [true, "pinhole", "image"]);
 });
 

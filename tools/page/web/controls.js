@@ -135,7 +135,7 @@ export function make_controls({ store, camera, move, focus_m, max_coc, object_m,
     by_id("wireframe").checked = state.show === "wireframe";
     by_id("impostors").checked = now.impostors !== "off";
     by_id("impostors-part").hidden = !has?.impostors;
-    by_id("subject-distance-part").hidden = !camera();
+    by_id("distances-part").hidden = !camera();
     by_id("backdrop-part").hidden = !has?.backdrop_m;
     const effect = by_id("effect");
     if (now.effect && ![...effect.options].some(({ value }) => value === now.effect)) {
@@ -208,6 +208,7 @@ export function make_controls({ store, camera, move, focus_m, max_coc, object_m,
     const of_scene = by_id("method").querySelector("optgroup:last-child");
     if (of_scene) of_scene.disabled = Boolean(state.picture);
     by_id("samples-part").hidden = !method?.samples;
+    by_id("aperture-part").hidden = Boolean(state.failure);
     by_id("blades-part").hidden = !method?.blades;
     by_id("turn-part").hidden = !method?.stretch || now.aperture_blades === 0;
     by_id("anamorphic-part").hidden = !method?.stretch;

@@ -122,9 +122,10 @@ export function frame_request(state, side, preview, hash = true) {
     numbers: ["coc", "depth"].includes(state.show),
     hash: hash && preview === 1,
   };
-  for (const key of seldom_set(side)) request[key] = side[key];
   if (state.camera) request.camera = state.camera;
-  if (state.picture || state.failure) return request;
+  if (state.failure) return request;  // whose answer is of a round aperture
+  for (const key of seldom_set(side)) request[key] = side[key];
+  if (state.picture) return request;
   const { light, shadows, textures, impostors, effect, backdrop_m } = state.look;
   Object.assign(request, light && { light }, shadows && { shadows }, !textures && { textures },
                 impostors && { impostors }, effect && { effect }, backdrop_m && { backdrop_m });
