@@ -97,18 +97,38 @@ struct RowSizes {
   int beyond_limit = 0;
 };
 
+constexpr int kHalves = 65536;
+
+float radius_of_half(const PixelCoc& coc, std::uint16_t depth) {
+  const float depth_m = half_to_float(depth);
+  return std::isinf(depth_m) ? coc.radius_at_infinity_px : std::fabs(coc_radius_px(coc, depth_m));
+}
+
+/// That of every half, for pictures of more pixels; else none.
+std::vector<float> radii_of_halves(const PixelCoc& coc, std::size_t pixels, ThreadPool& pool) {
+  constexpr int kBand = 1024;
+  std::vector<float> radii(pixels > kHalves ? kHalves : 0);
+  pool.for_each(static_cast<int>(radii.size()) / kBand, [&](int band) {
+    for (int half = band * kBand; half < (band + 1) * kBand; ++half) {
+      radii[static_cast<std::size_t>(half)] = radius_of_half(coc, static_cast<std::uint16_t>(half));
+    }
+  });
+  return radii;
+}
+
 }  // namespace
 
 CircleSizes circle_sizes(const ConstImageView& scene, const PixelCoc& coc, float limit_px,
                          ThreadPool& pool) {
   std::vector<RowSizes> rows(static_cast<std::size_t>(scene.height));
+  const std::size_t pixels =
+      static_cast<std::size_t>(scene.width) * static_cast<std::size_t>(scene.height);
+  const std::vector<float> radii = radii_of_halves(coc, pixels, pool);
   pool.for_each(scene.height, [&](int y) {
     RowSizes sizes;  // other threads' rows lie beside its place
     const auto values = row<std::uint16_t>(scene, y);
     for (std::size_t i = 3; i < values.size(); i += 4) {
-      const float depth_m = half_to_float(values[i]);
-      const float radius =
-          std::isinf(depth_m) ? coc.radius_at_infinity_px : std::fabs(coc_radius_px(coc, depth_m));
+      const float radius = radii.empty() ? radius_of_half(coc, values[i]) : radii[values[i]];
       if (radius > sizes.largest_px) sizes.largest_px = radius;
       if (radius > limit_px) ++sizes.beyond_limit;
     }

@@ -2,9 +2,12 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "dof/dof.h"
+#include "raster/images/texel.h"
 #include "tests/support/test_images.h"
 
 using namespace softfocus;
@@ -37,4 +40,27 @@ TEST_CASE("an infinite depth has the horizon's circle, a NaN none, and zero the 
   CHECK(sizes_of(std::numeric_limits<float>::quiet_NaN(), 1.0f).largest_px == 0.0f);
   CHECK(sizes_of(std::numeric_limits<float>::quiet_NaN(), 1.0f).beyond_limit == 0.0);
   CHECK(sizes_of(0.0f, 1.0f).largest_px == kLargestMaxCoc);
+}
+
+TEST_CASE("a large picture has the circles of its pixels, one by one") {
+  Image image = random_scene_image(320, 256, 7);
+  set_depth(image, [&](int x, int y) {
+    return x == y ? std::numeric_limits<float>::infinity()
+                  : 0.25f + 0.01f * static_cast<float>(x + y);
+  });
+  float largest_px = 0.0f;
+  int beyond = 0;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const float depth_m = load_texel<Format::rgba16f>(image, x, y).w;
+      const float radius = x == y ? 12.0f : std::fabs(coc_radius_px(kCoc, depth_m));
+      largest_px = std::max(largest_px, radius);
+      beyond += radius > 5.0f;
+    }
+  }
+  ThreadPool pool(2);
+  const CircleSizes sizes = circle_sizes(image, kCoc, 5.0f, pool);
+  CHECK(sizes.largest_px == largest_px);
+  CHECK(sizes.beyond_limit == beyond / (320.0 * 256.0));
+  CHECK(beyond > 1000);
 }
