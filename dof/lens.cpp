@@ -106,10 +106,10 @@ float radius_of_half(const PixelCoc& coc, std::uint16_t depth) {
 
 /// That of every half, for pictures of more pixels; else none.
 std::vector<float> radii_of_halves(const PixelCoc& coc, std::size_t pixels, ThreadPool& pool) {
-  constexpr int kBand = 1024;
+  constexpr int kHalvesAtOnce = 1024;
   std::vector<float> radii(pixels > kHalves ? kHalves : 0);
-  pool.for_each(static_cast<int>(radii.size()) / kBand, [&](int band) {
-    for (int half = band * kBand; half < (band + 1) * kBand; ++half) {
+  pool.for_each(static_cast<int>(radii.size()) / kHalvesAtOnce, [&](int band) {
+    for (int half = band * kHalvesAtOnce; half < (band + 1) * kHalvesAtOnce; ++half) {
       radii[static_cast<std::size_t>(half)] = radius_of_half(coc, static_cast<std::uint16_t>(half));
     }
   });
