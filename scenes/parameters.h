@@ -19,7 +19,7 @@ inline constexpr Parameter kShutter{"shutter",
 inline constexpr Parameter kBackdrop{"backdrop",
     "Distance of a portrait's backdrop, to its nearest object; it grows with it, and looks as large "
     "from where the scene has its camera",
-    0.01, 1e6, 0.0, "m", "METRES", "backdrop_m"};
+    0.01, 1e4, 0.0, "m", "METRES", "backdrop_m"};
 
 // --- lights with shadows ---
 inline constexpr Parameter kShadowDarkness{"shadow-darkness",
