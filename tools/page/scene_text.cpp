@@ -135,7 +135,9 @@ std::string scene_text(const Opened& opened, const ShownFrame& shown) {
                          : read_file_bytes(opened.scene.files.back(), kLargestText);
   // A camera's way stays in the file.
   if (shown.settings.camera || is_model_name(opened.source)) {
-    text = with_section(text, "camera", camera_lines(shown.drawn->camera));
+    Camera camera = shown.drawn->camera;
+    camera.far_m = opened.camera.far_m;  // which the command's --backdrop changes
+    text = with_section(text, "camera", camera_lines(camera));
   }
   return shown.lens ? with_section(text, "lens", lens_lines(*shown.lens)) : text;
 }

@@ -183,8 +183,9 @@ FrameSettings read_frame_settings(const Json& request) {
   take(parameter::kApertureBlades, settings.aperture.blades);
   take(kPageTurn, settings.aperture.turn_degrees);
   take(parameter::kAnamorphic, settings.aperture.stretch);
-  if (const char* error = aperture_error(settings.aperture)) throw UsageError(error);
-  settings.sampling.aperture.blades = settings.aperture.blades;
+  const Aperture aperture = used_aperture(settings);
+  if (const char* error = aperture_error(aperture)) throw UsageError(error);
+  settings.sampling.aperture.blades = aperture.blades;
   if (given(request, key_of(kGain)) != nullptr) {
     HighlightCurve& curve = settings.highlights.emplace();
     curve.threshold = kThreshold.preset;
@@ -200,7 +201,11 @@ FrameSettings read_frame_settings(const Json& request) {
 }
 
 Aperture used_aperture(const FrameSettings& settings) {
-  if (settings.method.name() == kApertureMethod) return settings.aperture;
+  if (settings.method.name() == kApertureMethod) {
+    Aperture aperture = settings.aperture;
+    if (aperture.blades == 0) aperture.turn_degrees = 0.0f;
+    return aperture;
+  }
   return {.blades = settings.method.samples_lens() ? settings.aperture.blades : 0};
 }
 

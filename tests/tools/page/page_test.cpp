@@ -292,7 +292,7 @@ TEST_CASE("every scene's frame has the picture_hash of the page's command" *
   open(page, "portrait");
   check(R"("backdrop_m":9.5)");
   check(
-      R"("backdrop_m":20,"camera":{"position_m":[0,1.5,3],"target_m":[0,1.5,0],"fov_y_degrees":20})");
+      R"("backdrop_m":20,"camera":{"position_m":[0,1.6,1.5],"target_m":[0,9,-2],"fov_y_degrees":90})");
   check(
       R"("method":"scatter-aperture","aperture_blades":5,"aperture_turn_degrees":-12.5,"anamorphic":1.5)");
   check(R"("method":"accumulation","samples":16,"aperture_blades":6,"anamorphic":2)");

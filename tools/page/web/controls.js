@@ -163,7 +163,10 @@ export function make_controls({ store, camera, move, focus_m, max_coc, object_m,
     const now = camera();
     if (!now) return;
     const way = metres - focus_m();
-    side({ focus: { m: metres } });
+    const { sides, editing } = store.get();
+    const kept = ({ focus }) => (focus.at ? focus : { m: within("focus_m", focus.m + way) });
+    store.change({ sides: sides.map((one, index) => (
+        { ...one, focus: index === editing ? { m: metres } : kept(one) })) });
     move(backed(now, way));
   }
 

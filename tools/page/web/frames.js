@@ -91,6 +91,7 @@ export function make_frames({ engine, store, moving, paint, on_frame, on_error, 
       const request = frame_request(state, state.sides[index], preview, !moving());
       const { reply, pixels } = await engine.ask(request, kUrgent);
       if (reply.cancelled || !open) {
+        was_slow ||= open && preview === 1;
         whole_ms = Math.max(whole_ms, (performance.now() - running.began) * preview * preview);
         last = null;
         break;

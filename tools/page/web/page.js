@@ -378,6 +378,7 @@ async function open_now(what, { words = null, read = null, state = null }) {
   if (next.picture) next = with_picture(next, reply.picture, listing.methods);
   if (words) next = with_link(next, words);
   if (state) next = state;
+  if (!reply.look?.backdrop_m) next = { ...next, look: { ...next.look, backdrop_m: null } };
   next.sides.forEach((_, index) => { known_focus_m[index] = reply.lens.focus_m; });
   for (const id of ["play", "step", "time"]) by_id(id).disabled = is_still();
   by_id("camera-home").disabled = Boolean(what.failure || what.picture);
