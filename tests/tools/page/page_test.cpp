@@ -372,7 +372,8 @@ TEST_CASE("the truth has the aperture's blades, turned and stretched as the meth
        {R"("aperture_blades":2)", R"("aperture_blades":3.5)", R"("anamorphic":0)",
         R"("highlight_gain":0.5)", R"("backdrop_m":9)"}) {
     CAPTURE(wrong);
-    CHECK(ask(page, R"({"do":"frame",)" + std::string{wrong} + "}").find("error") != nullptr);
+    CHECK(ask(page, R"({"do":"frame","method":"scatter-aperture",)" + std::string{wrong} + "}")
+              .find("error") != nullptr);
   }
 }
 
