@@ -17,8 +17,7 @@ inline constexpr Parameter kShutter{"shutter",
     "Of accumulation: how long the shutter is open, half of it before the frame's time",
     0.0, 64.0, 0.0, "frames", "FRAMES"};
 inline constexpr Parameter kBackdrop{"backdrop",
-    "Distance of a portrait's backdrop, to its nearest object; it grows with it, and looks as large "
-    "from where the scene has its camera",
+    "Distance to which the scene's backdrop is moved; it is scaled, and looks as large as before",
     0.01, 1e4, 0.0, "m", "METRES", "backdrop_m"};
 
 // --- lights with shadows ---

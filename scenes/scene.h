@@ -179,7 +179,8 @@ inline bool moves(const Object& object) {
          object.sway != glm::dvec3{0.0};
 }
 
-/// What stands far behind the subject: objects whose positions are farther from `eye` than that.
+/// What stands far behind the subject: objects whose positions are farther from `eye` than that
+/// (make/backdrop.h moves it).
 struct Backdrop {
   glm::dvec3 eye{0.0};
   double beyond_m = 0.0;
@@ -213,13 +214,5 @@ struct Scene {
 };
 
 std::size_t triangle_count(const Scene& scene);
-
-/// From the eye to the nearest object of the backdrop; none in a scene without.
-std::optional<double> backdrop_distance_m(const Scene& scene);
-
-/// Moves the backdrop of a scene that has one so far, and scales it: from the eye it looks the
-/// same. The camera sees as much farther. What comes nearer than `beyond_m` is no backdrop any
-/// more.
-void set_backdrop(Scene& scene, double distance_m);
 
 }  // namespace softfocus

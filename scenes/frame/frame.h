@@ -38,6 +38,9 @@ struct MethodChoice {
   std::size_t layers() const { return filter != nullptr ? filter->layers : 1; }
   bool samples_lens() const { return of_scene != nullptr && of_scene->samples_lens; }
   bool warps_views() const { return of_scene != nullptr && of_scene->warps_views; }
+  /// Whether the aperture may have blades, and whether these may be turned and stretched.
+  bool has_blades() const { return samples_lens() || has_any_aperture(); }
+  bool has_any_aperture() const { return name() == kApertureMethod; }
   bool has_shutter() const { return of_scene != nullptr && of_scene->has_shutter; }
   /// Whether it can have all circles at no cost.
   bool takes_any_radius() const { return filter != nullptr && filter->any_radius_costs_the_same; }

@@ -12,6 +12,7 @@
 #include "scenes/load/model_scene.h"
 #include "scenes/load/scene_sections.h"
 #include "scenes/load/toml_reading.h"
+#include "scenes/make/backdrop.h"
 #include "scenes/parameters.h"
 #include "scenes/random/random_scene.h"
 
@@ -348,31 +349,6 @@ Scene load_scene(std::string_view scene, const std::vector<std::filesystem::path
                                   [&](const SceneListing& l) { return l.name == scene; });
   if (found == listings.end()) fail_unknown(scene, listings);
   return read_scene_file(found->file, pool);
-}
-
-std::optional<double> backdrop_distance_m(const Scene& scene) {
-  std::optional<double> nearest;
-  if (!scene.backdrop) return nearest;
-  const auto& [eye, beyond_m] = *scene.backdrop;
-  for (const Object& object : scene.objects) {
-    const glm::dvec3 way = object.position - eye;
-    const double distance_m = std::sqrt(dot(way, way));
-    if (distance_m > beyond_m) nearest = std::min(nearest.value_or(distance_m), distance_m);
-  }
-  return nearest;
-}
-
-void set_backdrop(Scene& scene, double distance_m) {
-  const auto& [eye, beyond_m] = scene.backdrop.value();
-  const double factor = distance_m / backdrop_distance_m(scene).value();
-  for (Object& object : scene.objects) {
-    const glm::dvec3 way = object.position - eye;
-    if (std::sqrt(dot(way, way)) <= beyond_m) continue;
-    object.position = eye + factor * way;
-    object.scale *= factor;
-    object.sway *= factor;
-  }
-  scene.camera.far_m *= std::max(factor, 1.0);
 }
 
 std::size_t triangle_count(const Scene& scene) {

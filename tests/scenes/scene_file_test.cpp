@@ -5,6 +5,7 @@
 #include <string>
 
 #include "scenes/draw/frame_matrices.h"
+#include "scenes/make/backdrop.h"
 #include "tests/support/scene_texts.h"
 
 using namespace softfocus;

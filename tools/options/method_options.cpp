@@ -255,12 +255,13 @@ void check_arithmetic(Arithmetic arithmetic, const DofSettings& settings) {
 }
 
 void add_blades_option(CLI::App& parser, const std::string& help, int& blades) {
-  add_value(parser, "--aperture-blades", "N",
+  static constexpr const Parameter& kBlades = parameter::kApertureBlades;
+  add_value(parser, "--" + std::string{kBlades.name}, std::string{kBlades.type},
             help + " of 3 to 64 straight blades (default: 0, round)",
             [&blades](const std::string& text) {
               constexpr const char* kOption = "--aperture-blades";
               constexpr const char* kWanted = "0 for a disc or a whole number from 3 to 64";
-              blades = parse_whole(kOption, text, 0, kMostApertureBlades, kWanted);
+              blades = parse_whole(kOption, text, 0, static_cast<int>(kBlades.most), kWanted);
               if (blades == 1 || blades == 2)
                 parse_whole(kOption, text, 3, kMostApertureBlades, kWanted);
             });

@@ -8,6 +8,7 @@
 
 #include "scenes/draw/light_points.h"
 #include "scenes/draw/shadowed_layers.h"
+#include "scenes/make/backdrop.h"
 #include "scenes/parameters.h"
 #include "tools/cli/errors.h"
 #include "tools/options/parameter_options.h"

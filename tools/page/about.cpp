@@ -72,8 +72,8 @@ Json methods_json() {
                     {"summary", method.summary},
                     {"kind", "filter"},
                     {"samples", false},
-                    {"blades", method.name == kApertureMethod},
-                    {"stretch", method.name == kApertureMethod}});
+                    {"blades", MethodChoice{.filter = &method}.has_blades()},
+                    {"stretch", MethodChoice{.filter = &method}.has_any_aperture()}});
   }
   for (const LensViewMethod& method : lens_view_methods()) {
     if (!method.missing.empty()) continue;
@@ -81,8 +81,8 @@ Json methods_json() {
                     {"summary", method.summary},
                     {"kind", "views"},
                     {"samples", method.samples_lens},
-                    {"blades", method.samples_lens},
-                    {"stretch", false}});
+                    {"blades", MethodChoice{.of_scene = &method}.has_blades()},
+                    {"stretch", MethodChoice{.of_scene = &method}.has_any_aperture()}});
   }
   return list;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "scenes/load/load_scene.h"
+#include "scenes/make/backdrop.h"
 #include "scenes/parameters.h"
 #include "scenes/relief/impostors/scene_impostors.h"
 #include "tools/cli/errors.h"

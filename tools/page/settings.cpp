@@ -24,16 +24,9 @@ constexpr Parameter kPageTime = with_key(parameter::kFrame, "time");
 constexpr Parameter kPreview{"preview", "What sizes and radii are divided by", 1, 16, 1, "", "", "",
                              1};
 constexpr Parameter kPageTurn = with_key(parameter::kApertureTurn, "aperture_turn_degrees");
-constexpr Parameter kGain{
-    "gain", "How much brighter what is above the threshold is before the blur",
-    1.0,    1e4,
-    1.0,    "",
-    "",     "highlight_gain"};
-constexpr Parameter kThreshold{
-    "threshold", "Light above this is a highlight, which 8 bits have cut",
-    0.0,         1e4,
-    0.9,         "",
-    "",          "highlight_threshold"};
+constexpr Parameter kPageGain = with_key(parameter::kHighlightGain, "highlight_gain");
+constexpr Parameter kPageThreshold =
+    with_key(parameter::kHighlightThreshold, "highlight_threshold");
 constexpr std::array kPageParameters{parameter::kCocScale,
                                      parameter::kMaxCoc,
                                      kPageSamples,
@@ -43,8 +36,8 @@ constexpr std::array kPageParameters{parameter::kCocScale,
                                      parameter::kApertureBlades,
                                      kPageTurn,
                                      parameter::kAnamorphic,
-                                     kGain,
-                                     kThreshold};
+                                     kPageGain,
+                                     kPageThreshold};
 
 std::vector<double> checked_numbers(const Json& value, std::string_view name, std::size_t count,
                                     double least, double most) {
@@ -186,11 +179,11 @@ FrameSettings read_frame_settings(const Json& request) {
   const Aperture aperture = used_aperture(settings);
   if (const char* error = aperture_error(aperture)) throw UsageError(error);
   settings.sampling.aperture.blades = aperture.blades;
-  if (given(request, key_of(kGain)) != nullptr) {
+  if (given(request, key_of(kPageGain)) != nullptr) {
     HighlightCurve& curve = settings.highlights.emplace();
-    curve.threshold = kThreshold.preset;
-    take(kGain, curve.gain);
-    take(kThreshold, curve.threshold);
+    curve.threshold = kPageThreshold.preset;
+    take(kPageGain, curve.gain);
+    take(kPageThreshold, curve.threshold);
   }
   if (const Json* hash = given(request, "hash")) settings.hash = hash->boolean();
   take(kPreview, settings.preview);
@@ -201,12 +194,11 @@ FrameSettings read_frame_settings(const Json& request) {
 }
 
 Aperture used_aperture(const FrameSettings& settings) {
-  if (settings.method.name() == kApertureMethod) {
-    Aperture aperture = settings.aperture;
-    if (aperture.blades == 0) aperture.turn_degrees = 0.0f;
-    return aperture;
-  }
-  return {.blades = settings.method.samples_lens() ? settings.aperture.blades : 0};
+  if (!settings.method.has_blades()) return {};
+  if (!settings.method.has_any_aperture()) return {.blades = settings.aperture.blades};
+  Aperture aperture = settings.aperture;
+  if (aperture.blades == 0) aperture.turn_degrees = 0.0f;
+  return aperture;
 }
 
 Camera chosen_camera(const Camera& of_scene, const std::optional<CameraChoice>& choice) {

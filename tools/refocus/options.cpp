@@ -120,8 +120,8 @@ HighlightCurve parse_highlights(const std::string& text) {
   const auto comma = text.find(',');
   try {
     if (comma != text.npos) {
-      return {parse_number("", text.substr(0, comma), 1.0, 1e4, ""),
-              parse_number("", text.substr(comma + 1), 0.0, 1e4, "")};
+      return {parse_parameter("", text.substr(0, comma), parameter::kHighlightGain),
+              parse_parameter("", text.substr(comma + 1), parameter::kHighlightThreshold)};
     }
   } catch (const UsageError&) {  // which knows one number alone
   }

@@ -50,6 +50,14 @@ struct HighlightCurve {
   double threshold = 1.0;  ///< 0 or more
 };
 
+namespace parameter {
+inline constexpr Parameter kHighlightGain{
+    "gain", "How much light above the threshold is raised before the blur", 1.0, 1e4, 1.0};
+inline constexpr Parameter kHighlightThreshold{
+    "threshold", "Light above this is a highlight, of which 8 bits have lost a part", 0.0, 1e4,
+    0.9};
+}  // namespace parameter
+
 /// GAIN,THRESHOLD. Throws UsageError.
 HighlightCurve parse_highlights(const std::string& text);
 

@@ -234,6 +234,12 @@ TEST_CASE("a frame's look: its light, shadows, textures, effect, and as a wirefr
   // In any order, the same.
   CHECK(with(R"(,"shadows":"volumes","light":[1,2,1])") == moved);
   CHECK(with("") == plain);
+  open(page, "portrait");
+  const std::string as_it_is = with(R"(,"dof":false)");
+  CHECK(with(R"(,"dof":false,"backdrop_m":9)") != as_it_is);
+  CHECK(with(R"(,"dof":false,"backdrop_m":9,"shadows":"volumes","light":[1,2,1])") !=
+        with(R"(,"dof":false,"shadows":"volumes","light":[1,2,1])"));
+  CHECK(with(R"(,"dof":false)") == as_it_is);
   for (const char* const wrong : {R"("shadows":"soft")", R"("light":[0,0,0])", R"("light":[1,2])",
                                   R"("effect":"bloo")", R"("impostors":"on")"}) {
     CAPTURE(wrong);
@@ -350,24 +356,21 @@ TEST_CASE("the truth has the aperture's blades, turned and stretched as the meth
   open(page, folder.file("lights.toml"));
   const std::string frame =
       R"("size":[96,96],"focus":{"m":1},"coc_scale":6,"max_coc_px":64,"method":"scatter-aperture","aperture_blades":3,)"
-      R"("aperture_turn_degrees":40,"anamorphic":)";
-  const auto flip_of = [&](const char* stretch) {
-    hash_of(page, frame + stretch);
+      R"("aperture_turn_degrees":)";
+  // Held against its own truth, and against those of other turns and stretches.
+  const std::string own = frame + R"(40,"anamorphic":3)";
+  hash_of(page, own);
+  const Image picture = page.shown->picture;
+  const auto flip_against = [&](const std::string& settings) {
+    hash_of(page, settings);
+    page.shown->picture = picture;
     return ask_well(page, R"({"do":"truth","views":512})").at("flip_mean").number();
   };
-  // Each against its own truth, whose views are kept no longer than its aperture.
-  const double narrow = flip_of("3"), low = flip_of("0.33");
-  const Image picture = page.shown->picture;
-  const double of_another = [&] {
-    hash_of(page, frame + "3");
-    ask_well(page, R"({"do":"truth","views":512})");
-    page.shown->picture = picture;
-    page.shown->flip.reset();
-    return ask_well(page, R"({"do":"truth"})").at("flip_mean").number();
-  }();
-  CAPTURE(narrow);
-  CAPTURE(low);
-  CHECK(of_another > 1.3 * std::max(narrow, low));
+  const double own_flip = flip_against(own);
+  for (const char* const other : {R"(40,"anamorphic":0.33)", R"(-40,"anamorphic":3)", "40"}) {
+    CAPTURE(other);
+    CHECK(flip_against(frame + other) > 1.3 * own_flip);
+  }
   for (const char* const wrong :
        {R"("aperture_blades":2)", R"("aperture_blades":3.5)", R"("anamorphic":0)",
         R"("highlight_gain":0.5)", R"("backdrop_m":9)"}) {

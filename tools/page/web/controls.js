@@ -64,11 +64,12 @@ export function make_controls({ store, camera, move, focus_m, max_coc, object_m,
       label: "Subject distance", tip: "subject_distance", curve: "log", from: 0.3, to: 30,
       get: focus_m, set: go_to });
     add("backdrop", "backdrop_m", {
-      label: "Backdrop distance", curve: "log", from: 1, to: 100, shown_digits: () => 3,
+      label: "Backdrop distance", curve: "log", from: 2, to: 100, shown_digits: () => 3,
       get: () => store.get().look.backdrop_m ?? scene_look()?.backdrop_m,
       set: (value) => look({ backdrop_m: value }) });
     add("blades", "aperture_blades", {
       label: "Blades", values: [0, 3, 4, 5, 6, 7, 8, 9, 11, 14, 18],
+      allows: (value) => Number.isInteger(value) && value !== 1 && value !== 2, wanted: "0 or 3 to 64",
       spoken: (text) => (text === "0" ? "round" : `${text} blades`) });
     add("turn", "aperture_turn_degrees", { label: "Turn of the blades", from: -180, to: 180, decimals: 0 });
     add("anamorphic", "anamorphic", { label: "Height over width", unit: "×", curve: "log",

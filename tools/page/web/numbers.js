@@ -34,7 +34,8 @@ export function make_trail() {
  * Fills `part` with the control. `control` has: id, label, unit, key (shown), tip (a name in
  * tips.js), from and to (the slider's ends), curve, min and max (the field's), digits, decimals (at
  * most) of the slider's values, or values (the only ones, in order, in place of a range), get() and
- * set(value), shown_digits(), spoken(text) (the value as it is read out).
+ * set(value), shown_digits(), spoken(text) (the value as it is read out), allows(value) and wanted, if
+ * the field does not take all from min to max: which, and so in words.
  * Returns {update(), nudge(steps)}.
  */
 export function make_number(part, control) {
@@ -97,7 +98,8 @@ export function make_number(part, control) {
     refused_at = usable ? null : control.get();
     range.hidden = usable;
     const { label, min, max } = control;
-    range.textContent = usable ? "" : `${label}: give ${limit_text(min)} to ${with_unit(limit_text(max))}`;
+    const wanted = control.wanted ?? `${limit_text(min)} to ${with_unit(limit_text(max))}`;
+    range.textContent = usable ? "" : `${label}: give ${wanted}`;
   }
 
   /** The nearest value at so many places from there, or more, that is another. */
@@ -128,7 +130,8 @@ export function make_number(part, control) {
   });
   field.addEventListener("input", () => {
     const value = field.valueAsNumber;
-    const usable = Number.isFinite(value) && value >= control.min && value <= control.max;
+    const usable = Number.isFinite(value) && value >= control.min && value <= control.max &&
+                   (control.allows?.(value) ?? true);
     field.setAttribute("aria-invalid", String(!usable));
     show_range(usable);
     if (usable) control.set(value);
