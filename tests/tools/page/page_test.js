@@ -400,7 +400,7 @@ test("while a slow frame is moved it stays coarse, a quick one whole, whatever i
   };
   assert.ok((await previews_of(15)).every((preview) => preview === 1));
   for (const gives_way of [false, true]) {
-    const previews = await previews_of(80, gives_way);
+    const previews = await previews_of(56, gives_way);
     const tried = previews.filter((preview) => preview === 1).length;
     assert.ok(previews.length > 5 && tried <= 2, `${previews}`);  // the first, and once more
   }
